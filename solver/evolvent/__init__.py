@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from evolvent.contact.step.step_solution import Solution as Solution
     from evolvent.contact.step.step_system import StepSystem as StepSystem
     from evolvent.contact.transient.energy import EnergyGrowth as EnergyGrowth
+    from evolvent.contact.transient.energy import EnergyNotKept as EnergyNotKept
     from evolvent.contact.transient.settings import InitialState as InitialState
     from evolvent.contact.transient.settings import TransientSettings as TransientSettings
     from evolvent.contact.transient.solver import CoarseTimeStepWarning as CoarseTimeStepWarning

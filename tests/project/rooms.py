@@ -27,7 +27,11 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "contact.solution": (
         "meshes", "meshes.mesh", "fem", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
     ),
-    "contact.transient": ("meshes", "fem.modes", "contact.problem", "contact.step"),
+    "contact.transient.time_schemes": ("meshes",),
+    "contact.transient": (
+        "meshes", "fem", "fem.modes", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
+        "contact.transient.time_schemes",
+    ),
     "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),
     "gears.meshing": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.gears.modifications", "meshes.sector", "gears.problem",
@@ -65,8 +69,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.problem", "gears.meshing", "gears.two_level", "gears",
     ),
     "dynamics.transient": (
-        "meshes", "meshes.gears", "contact.newton", "contact.transient", "gears.problem", "gears.ring", "gears",
-        "gears.contact", "gears.sweep", "dynamics", "dynamics.modes",
+        "meshes", "meshes.gears", "contact.newton", "contact.transient.time_schemes", "gears.problem", "gears.ring",
+        "gears", "gears.contact", "gears.sweep", "dynamics", "dynamics.modes",
     ),
     "strength.standard": ("meshes", "meshes.gears"),
     "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
@@ -136,8 +140,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
-        "meshes", "meshes.gears", "contact.transient", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing",
-        "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing",
+        "meshes", "meshes.gears", "contact.transient.time_schemes", "fem.backend", "fem.parallel", "gears.problem",
+        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive",
+        "results.drawing",
         "dynamics.*", "run",
     ),
     "run.study.plan": (

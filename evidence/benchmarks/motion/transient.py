@@ -11,7 +11,7 @@ from mpi4py import MPI
 
 from evidence.benchmarks.motion.motion_row import MotionRow
 from evidence.checkout import DEMOS
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.transient.driven_pair import driven_pair, loaded_as_static, resolved_modes
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.pair_transient import PairTransient

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair

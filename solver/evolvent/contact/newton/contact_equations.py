@@ -42,6 +42,7 @@ class CondensedSystem:
     load: F (r,), loads on the free rigid motions [N, N·mm].
     resistance: D (r, r), forces against unit amplitudes of the free rigid motions [N/mm, N, N·mm], symmetric.
     lever: (r,) largest jump by a unit amplitude of each motion [mm per unit], to compare forces with moments.
+    least_scale: force [N] with which residuals are compared at least.
     """
 
     operator: ContactOperator
@@ -51,6 +52,7 @@ class CondensedSystem:
     load: Floats
     resistance: Floats
     lever: Floats
+    least_scale: float = 0.0
 
     @cached_property
     def motions(self) -> FreeMotions:
@@ -74,7 +76,7 @@ class CondensedSystem:
     @property
     def scale(self) -> float:
         """The force [N] that residuals are compared with."""
-        return float(np.abs(self.load / self.lever).max(initial=0.0))
+        return float(np.abs(self.load / self.lever).max(initial=self.least_scale))
 
 
 @dataclass(frozen=True)

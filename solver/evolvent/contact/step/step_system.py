@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 import scipy.sparse as sp
@@ -27,6 +29,7 @@ from evolvent.contact.problem.body_response import BodyResponse, StaticResponse
 from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Placement, Problem, Side, Step, check_step
 from evolvent.contact.problem.pressure_carrier import pressure_sides
+from evolvent.contact.problem.rigid_motions import motions_at
 from evolvent.contact.step.bodies_compliance import BodiesCompliance
 from evolvent.contact.step.contact_result import ContactResult
 from evolvent.contact.step.free_motion import free_motion
@@ -39,7 +42,7 @@ from evolvent.contact.step.paired_surfaces import (
     reach_of,
 )
 from evolvent.contact.step.step_solution import DeformedSurfaces, Solution
-from evolvent.fem.body import Assembled, RigidMotions
+from evolvent.fem.body import RigidMotions
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats
 
@@ -80,6 +83,7 @@ class StepSystem:
         self.paired = [self._pair(i, search_at[i] if search_at else None) for i in range(len(problem.contacts))]
         self.operators = [paired.operator for paired in self.paired]
         self.maps = [self._map(b) for b in range(len(condensed))]
+        self.least_scale = 0.0
 
     def _surface(self, side: Side) -> Surface:
         placement = self.placements[side[0]]
@@ -139,6 +143,18 @@ class StepSystem:
         whole = BodiesCompliance(self.maps, [response.compliance for response in self.responses], self.d)
         return DenseCompliance(whole.matrix, self.d) if self.friction.any() else whole
 
+    def answering(
+        self, responses: Sequence[BodyResponse], motions: Sequence[RigidMotions], least_scale: float
+    ) -> Self:
+        """With the same pairs, and other responses and rigid motions, prescribed or free, of the bodies.
+
+        least_scale: see `CondensedSystem`.
+        """
+        other = copy(self)
+        other.responses, other.motions, other.least_scale = responses, list(motions), least_scale
+        other.__dict__.pop("compliance", None)  # cached
+        return other
+
     def load_jump(self) -> Floats:
         """Local jumps without contact forces and rigid motions, (Σn·d,) [mm]."""
         return np.sum([E @ response.displacement for E, response in zip(self.maps, self.responses)], axis=0)
@@ -159,8 +175,9 @@ class StepSystem:
         motion, load, resistance = np.hstack(H), np.concatenate(F), [each.resistance for each in self.responses]
         lever = np.abs(motion).max(axis=0, initial=0.0)
         return CondensedSystem(
-            operator, self.compliance, motion, jump, load, block_diag(*resistance), np.where(lever > 0.0, lever, 1.0)
-        )
+            operator, self.compliance, motion, jump, load, block_diag(*resistance), np.where(lever > 0.0, lever, 1.0),
+            self.least_scale,
+        )  # fmt: skip
 
     def solve(
         self, previous: DeformedSurfaces | None, operators: Sequence[ContactOperator] | None = None
@@ -280,16 +297,3 @@ class StepSystem:
             result.append(surface.points + u @ self.placements[side[0]].rotation.T)
         result[0][paired.operator.nodes] += paired.operator.flux(traction)
         return result[0], result[1]
-
-
-def motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
-    """The rigid motions of body `index` with their loads and prescribed amplitudes in a step."""
-    motions, rigid = assembled.motions, assembled.body.rigid
-    names = [f.direction for f in rigid.freedoms] if rigid else []
-    load, value = step.load * motions.load, step.load * motions.value
-    for freedom in (f for i, f in step.freedoms if i == index):
-        k = names.index(freedom.direction)
-        carried = step.load * float(motions.shapes[:, :, k].ravel() @ assembled.load)
-        load[k] = np.nan if freedom.load is None else freedom.load + carried
-        value[k] = np.nan if freedom.displacement is None else freedom.displacement
-    return RigidMotions(motions.shapes, load, value)

@@ -24,7 +24,7 @@ import numpy as np
 
 from evolvent.contact.transient.body_motion import BodyMotion
 from evolvent.contact.transient.settings import TransientSettings
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 
 SAFETY = 0.9
 """Of the length at which the error would be the tolerance."""

@@ -10,13 +10,13 @@ from evolvent.contact.problem.definition import Problem, Step
 from evolvent.contact.step.step_solution import DeformedSurfaces
 from evolvent.contact.step.step_system import StepSystem
 from evolvent.contact.transient.body_motion import BodyMotion
-from evolvent.contact.transient.energy import Energy, EnergyBalance
+from evolvent.contact.transient.energy import Energy, EnergyBalance, contact_energy
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
-from evolvent.contact.transient.settings import InitialState
-from evolvent.contact.transient.time_scheme import MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.settings import InitialState, TransientSettings
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.input_checks import refuse
+from evolvent_meshes.input_checks import Words, refuse
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def begun(
         velocity = _velocity(body, index, start)
         still = BodyMotion(MotionState(position, velocity, np.zeros_like(position)), position * 0.0, response, forces)
         motions.append(_accelerated(still))
-    total = Energy.of(motions, solution.contacts if solution else ()).total
+    total = Energy.of(motions, contact_energy(solution.contacts if solution else ())).total
     return Reached(0.0, 0.0, length, tuple(motions), deformed, EnergyBalance(total, total))
 
 
@@ -98,8 +98,13 @@ def _accelerated(still: BodyMotion) -> BodyMotion:
     return BodyMotion(MotionState(state.position, state.velocity, acceleration), still.lag, response, still.forces)
 
 
-def check(problem: Problem, start: InitialState) -> None:
+def check(problem: Problem, settings: TransientSettings, start: InitialState) -> None:
     """Raises InputError for what a transient cannot have."""
+    if settings.conserving and (friction := [c.friction for c in problem.contacts if c.friction]):
+        refuse(
+            "transient, conserving", "contacts without friction", Words(f"friction = {friction[0]:g}"),
+            "leave out conserving: friction takes energy",
+        )  # fmt: skip
     if problem.nitsche.theta != 1.0:
         found = f"theta = {problem.nitsche.theta:g}"
         refuse("transient", "the symmetric variant, theta = 1", found, "leave out theta: other variants have no energy")

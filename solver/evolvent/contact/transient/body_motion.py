@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.contact.transient.moving_response import MovingResponse
-from evolvent.contact.transient.time_scheme import MotionState
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState
 from evolvent_meshes.arrays import Floats
 
 

@@ -17,6 +17,9 @@ GROWTH = 0.02
 """Of the largest energy so far: by how much it may seem to grow. Within a blow the sum of energies at the ends of time
 steps swings by 0.4 % with 20 steps a blow of a ball, 0.05 % with 40."""
 
+KEPT = 1e-8
+"""Of the largest energy so far: by how much it may be off with a scheme that conserves it."""
+
 
 @dataclass(frozen=True)
 class Energy:
@@ -36,12 +39,12 @@ class Energy:
         return self.kinetic + self.elastic + self.contact
 
     @staticmethod
-    def of(motions: Sequence[BodyMotion], contacts: Sequence[ContactResult]) -> Energy:
-        """Of these bodies."""
+    def of(motions: Sequence[BodyMotion], contact: float) -> Energy:
+        """Of these bodies, with what is stored in their contacts."""
         parts = [_motion_energy(motion) for motion in motions]
         kinetic, elastic = (sum(each) for each in zip(*parts))
         elastic += sum(_rest_energy(motion.response, motion.forces) for motion in motions)
-        return Energy(kinetic, elastic, _contact_energy(contacts))
+        return Energy(kinetic, elastic, contact)
 
 
 def _motion_energy(motion: BodyMotion) -> tuple[float, float]:
@@ -57,11 +60,14 @@ def _rest_energy(response: MovingResponse, forces: Floats) -> float:
     return float(0.5 * forces @ (body.rest @ forces) + forces @ loaded + 0.5 * _own(response))
 
 
-def _contact_energy(contacts: Sequence[ContactResult]) -> float:
+def contact_energy(contacts: Sequence[ContactResult]) -> float:
     """∫ λ²/2γ of all contacts."""
-    return sum(
-        0.5 * float(np.sum(c.weights * c.pressure**2 / c.paired.operator.stabiliser[:, 0])) for c in contacts
-    )
+    return sum(stored_energy(c.weights, c.pressure, c.paired.operator.stabiliser[:, 0]) for c in contacts)
+
+
+def stored_energy(weights: Floats, pressure: Floats, stabiliser: Floats) -> float:
+    """∫ λ²/2γ over points (q,) with these weights, pressures λ and γ."""
+    return 0.5 * float(np.sum(weights * pressure**2 / stabiliser))
 
 
 def load_work(before: BodyMotion, after: BodyMotion) -> float:
@@ -103,6 +109,10 @@ class EnergyGrowth(ResultError):
     """The bodies have more energy than they had at the start and were given by loads and prescribed motions."""
 
 
+class EnergyNotKept(ResultError):
+    """The energy after a time step that is to conserve it is another one."""
+
+
 @dataclass(frozen=True)
 class EnergyBalance:
     """From the start to one time [N·mm; N in 2D]."""
@@ -114,7 +124,7 @@ class EnergyBalance:
     work: float = 0.0
     """Of all loads and of what moves the prescribed motions."""
     added: float = 0.0
-    """By the time scheme, see `lag_work`."""
+    """By the time scheme, see `lag_work`; of one that conserves energy, what damping has taken, negative."""
 
     def after(self, energy: float, work: float, added: float) -> EnergyBalance:
         """After a step with this energy at its end, in which this work was done, and so much added by the scheme."""
@@ -124,6 +134,20 @@ class EnergyBalance:
         """After a step that is not accepted, but shows what energy there will be: at a start from rest there is none to
         compare errors with."""
         return replace(self, largest=max(self.largest, energy))
+
+    def left(self, energy: float) -> float:
+        """Of an energy: what is beyond that of the start, the work, and what the scheme has added."""
+        return energy - self.first - self.work - self.added
+
+    def certify(self, energy: float, time: float) -> None:
+        """Raises EnergyNotKept for an energy at a time [s] that is not all of it, of a scheme that conserves it."""
+        left = self.left(energy)
+        if not abs(left) <= KEPT * self.largest:
+            raise EnergyNotKept(
+                f"transient at {time:.4g} s: wanted the energy of the start and the work that was done, to {KEPT:g} of "
+                f"the largest, found {left / self.largest if self.largest else left:+.1e} of it more; take a shorter "
+                "time step, or leave out conserving"
+            )
 
     def refuse_growth(self, energy: float, time: float) -> None:
         """Raises EnergyGrowth for an energy at a time [s] beyond all that. What the scheme has taken is not claimed."""

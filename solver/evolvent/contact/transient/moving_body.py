@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from evolvent.contact.problem.condensed_body import CondensedBody
-from evolvent.contact.transient.time_scheme import LinearSystem
+from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem
 from evolvent.fem.modes.mean_axes import MeanAxes
 from evolvent.fem.modes.natural_modes import NaturalModes, natural_modes
 from evolvent_meshes.arrays import Floats, Ints
@@ -109,6 +109,23 @@ class MovingBody:
         mean[self.free] += self.axes.carried.T @ w
         answer = self.modal_load(load, resultant) + self.functionals.T @ forces
         return np.concatenate([answer / self.modes.frequencies**2, mean])
+
+    def field(self, load: float, resultant: Floats, forces: Floats, modes: Floats, motion: Floats) -> Floats:
+        """Displacement of the nodes (N, d) [mm] under these loads and forces on the functionals (k,), at amplitudes of
+        the modes (m,) and rigid motions (r,): static but for the modes."""
+        w = self._deformation(load, resultant, forces, modes)
+        shapes = self.condensed.assembled.motions.shapes
+        return self.axes.shape(w).reshape(shapes.shape[:2]) + shapes @ motion
+
+    def _deformation(self, load: float, resultant: Floats, forces: Floats, modes: Floats) -> Floats:
+        """w (n,) [mm] on the free degrees of freedom."""
+        condensed = self.condensed
+        contact = (condensed.functionals.T @ forces)[condensed.assembled.free]
+        carried = self.axes.carried @ (resultant + condensed.motion_shapes[:, self.free].T @ forces)
+        answer = self.modal_load(load, resultant) + self.functionals.T @ forces
+        behind = modes - answer / self.modes.frequencies**2
+        static = condensed.factor.solve(load * condensed.load + contact - carried)
+        return np.asarray(static + self.modes.shapes @ behind)
 
     @cached_property
     def _loaded(self) -> Floats:

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from evolvent.contact.problem.definition import Step
-from evolvent.contact.step.step_system import motions_at
+from evolvent.contact.problem.rigid_motions import motions_at
 from evolvent.contact.transient.moving_body import MovingBody
-from evolvent.contact.transient.time_scheme import MotionState, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState, StepEquations
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.errors import InputError
 
@@ -21,7 +21,7 @@ class MovingResponse:
 
     body: MovingBody
     """The body."""
-    step: TimeStep
+    step: StepEquations
     """From its state at the begin, on modes and rigid motions (m + r)."""
     factor: float
     """Of its loads at the end."""
@@ -31,7 +31,7 @@ class MovingResponse:
     """(r,) rigid motions at the end, NaN where they are free [mm, rad]."""
 
     @staticmethod
-    def of(body: MovingBody, index: int, step: Step, time_step: TimeStep) -> MovingResponse:
+    def of(body: MovingBody, index: int, step: Step, time_step: StepEquations) -> MovingResponse:
         """Of body `index` under the loads and prescribed motions of a step.
 
         Raises InputError for a step that prescribes what is loaded, or loads what is prescribed.
@@ -76,25 +76,7 @@ class MovingResponse:
 
     def field(self, forces: Floats, motion: Floats) -> Floats:
         """See `BodyResponse.field`: static under all forces and the inertia forces of the modes and rigid motions."""
-        w, body = self._deformation(forces), self.body
-        shapes = body.condensed.assembled.motions.shapes
-        return body.axes.shape(w).reshape(shapes.shape[:2]) + shapes @ motion
-
-    def _deformation(self, forces: Floats) -> Floats:
-        """w (n,) [mm] on the free degrees of freedom."""
-        condensed, axes = self.body.condensed, self.body.axes
-        free, modes = condensed.assembled.free, self.body.modes
-        contact = (condensed.functionals.T @ forces)[free]
-        load = self.factor * condensed.load + contact - axes.carried @ self._resultant(forces)
-        behind = self.modes(forces) - self._modal_force(forces) / modes.frequencies**2
-        return np.asarray(condensed.factor.solve(load) + modes.shapes @ behind)
-
-    def _modal_force(self, forces: Floats) -> Floats:
-        return self.body.modal_load(self.factor, self.resultant) + self.body.functionals.T @ forces
-
-    def _resultant(self, forces: Floats) -> Floats:
-        """(s,) of loads and contact forces on the free rigid motions."""
-        return self.resultant + self.body.condensed.motion_shapes[:, self.body.free].T @ forces
+        return self.body.field(self.factor, self.resultant, forces, self.modes(forces), motion)
 
     @property
     def _modal(self) -> Floats:

@@ -11,10 +11,10 @@ from evolvent.contact.step.step_system import SearchPositions, StepSystem
 from evolvent.contact.transient.adaptive_steps import step_error
 from evolvent.contact.transient.beginning import Reached
 from evolvent.contact.transient.body_motion import BodyMotion
-from evolvent.contact.transient.energy import Energy, driving_work, lag_work, load_work
+from evolvent.contact.transient.energy import Energy, contact_energy, driving_work, lag_work, load_work
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
-from evolvent.contact.transient.time_scheme import TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 
 
@@ -30,6 +30,8 @@ class SolvedStep:
     """Of all bodies there."""
     error: float
     """Estimated, see adaptive_steps.py."""
+    systems: int
+    """Contact systems that were solved."""
 
 
 def solve_step(
@@ -51,13 +53,14 @@ def solve_step(
 
     _, solution, deformed = solve_with_displaced_search(system_of, problem, before.deformed)
     motions = tuple(_moved(scheme, *each) for each in zip(responses, solution.nodal_forces, solution.motions))
-    energy, time = Energy.of(motions, solution.contacts), before.time + length
+    energy, time = Energy.of(motions, contact_energy(solution.contacts)), before.time + length
     ends = list(zip(before.motions, motions))
     work = sum(load_work(*each) + driving_work(*each) for each in ends)
     balance = before.balance.after(energy.total, work, sum(lag_work(*each) for each in ends))
     balance.refuse_growth(energy.total, time)
     error = step_error(scheme, motions, balance.largest)
-    return SolvedStep(Reached(time, length, length, motions, deformed, balance), solution, energy, error)
+    reached = Reached(time, length, length, motions, deformed, balance)
+    return SolvedStep(reached, solution, energy, error, solution.searches)
 
 
 def _moved(scheme: TimeScheme, response: MovingResponse, forces: Floats, motion: Floats) -> BodyMotion:

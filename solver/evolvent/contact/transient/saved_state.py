@@ -23,7 +23,7 @@ from evolvent.contact.transient.energy import EnergyBalance
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
 from evolvent.contact.transient.settings import TransientSettings
-from evolvent.contact.transient.time_scheme import MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.digests import digest
 from evolvent_meshes.errors import InputError
@@ -31,7 +31,7 @@ from evolvent_meshes.files import open_file, write_bytes
 from evolvent_meshes.input_checks import Words, refuse
 
 FORMAT = "evolvent transient 1"
-KEPT = "modes", "damping_ratio", "spectral_radius"
+KEPT = "modes", "damping_ratio", "spectral_radius", "conserving"
 """Settings with which a transient has to go on; lengths of time steps may change."""
 SAME = 1e-6
 """Largest difference of a projection of a mode, over the largest one of its body."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from evolvent.contact.problem.definition import Step
-from evolvent_meshes.input_checks import instance, is_index, number, refuse, vector
+from evolvent_meshes.input_checks import Words, instance, is_index, number, refuse, vector
 
 MODES = 20
 """Natural modes of each body, unless others are asked for."""
@@ -29,6 +29,8 @@ class TransientSettings:
     tolerance: estimated error of the speeds in a time step, over the largest speed (adaptive_steps.py), up to which it
         is accepted; None: all steps are equal.
     shortest_step: [s], accepted with any error, with a warning; by default a thousandth of time_step.
+    conserving: keep the energy in each step, but for loads and damping (conserving_step.py). For contact without
+        friction; steps are equal, there is no spectral_radius, and each takes two contact systems or more.
     Raises InputError.
 
     >>> TransientSettings(time_step=1e-5, tolerance=1e-3).least_step
@@ -41,6 +43,7 @@ class TransientSettings:
     spectral_radius: float = DAMPED
     tolerance: float | None = None
     shortest_step: float | None = None
+    conserving: bool = False
 
     def __post_init__(self) -> None:
         number("transient, time_step", self.time_step, "a finite number > 0 [s]", "give one in s", lambda h: h > 0.0)
@@ -55,6 +58,7 @@ class TransientSettings:
             lambda ρ: 0.0 <= ρ <= 1.0,
         )  # fmt: skip
         self._check_adaptive()
+        self._check_conserving()
 
     @property
     def least_step(self) -> float:
@@ -73,6 +77,17 @@ class TransientSettings:
             "transient, shortest_step", self.shortest_step, f"a number above 0 and up to time_step, {self.time_step:g}",
             f"leave it out for {SHORTEST:g} of time_step", lambda h: 0.0 < h <= self.time_step,
         )  # fmt: skip
+
+    def _check_conserving(self) -> None:
+        instance("transient, conserving", self.conserving, bool, "write conserving=True, or leave it out")
+        if not self.conserving:
+            return
+        if self.spectral_radius != DAMPED:
+            found = f"spectral_radius = {self.spectral_radius:g}"
+            refuse("transient, conserving", "no spectral_radius", Words(found), "leave out one of both")
+        if self.tolerance is not None:
+            remedy = "leave out tolerance, or conserving"
+            refuse("transient, conserving", "equal steps", Words(f"tolerance = {self.tolerance:g}"), remedy)
 
 
 @dataclass(frozen=True)

@@ -18,12 +18,13 @@ from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.contact.step.step_solution import Solution
 from evolvent.contact.transient.adaptive_steps import StepLengths
 from evolvent.contact.transient.beginning import Reached, begun, check
+from evolvent.contact.transient.conserving_step import PlacedPairs, solve_conserving_step
 from evolvent.contact.transient.energy import Energy
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.one_step import SolvedStep, solve_step
 from evolvent.contact.transient.saved_state import read_state, write_state
 from evolvent.contact.transient.settings import InitialState, TransientSettings
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 from evolvent_meshes.input_checks import instance, number, refuse
@@ -47,6 +48,7 @@ class Moment:
     work: of all loads and prescribed motions since the start [N·mm; N in 2D].
     length: of the time step [s].
     error: estimated error of the speeds in the step, over the largest speed so far (adaptive_steps.py).
+    systems: contact systems that were solved for it.
     """
 
     time: float
@@ -56,6 +58,7 @@ class Moment:
     work: float
     length: float
     error: float
+    systems: int
 
 
 class Transient:
@@ -73,9 +76,10 @@ class Transient:
         instance("transient, settings", settings, TransientSettings, "write TransientSettings(time_step=1e-6)")
         self.problem, self.settings, self.start = problem, settings, InitialState() if start is None else start
         instance("transient, start", self.start, InitialState, "write InitialState(velocities={1: (0.0, -1000.0)})")
-        check(problem, self.start)
+        check(problem, settings, self.start)
         self._scheme, self._lengths = TimeScheme(settings.spectral_radius), StepLengths.of(settings)
         self._reached: Reached | None = None
+        self._pairs = PlacedPairs()
         self._warned = 0.0
 
     @cached_property
@@ -97,7 +101,7 @@ class Transient:
         of larger errors of the shortest step by a CoarseTimeStepWarning.
 
         Raises InputError, NotConverged, SearchError, PairingNotSettled, SmallStrainExceeded, NotPositiveDefinite,
-        EnergyGrowth.
+        EnergyGrowth, EnergyNotKept.
         """
         return self._solve(step, np.inf)
 
@@ -128,8 +132,8 @@ class Transient:
     def resume(path: Path | str, problem: Problem, settings: TransientSettings) -> Transient:
         """A transient that goes on from where one of the same problem was saved, bit for bit as that would have.
 
-        settings: the same modes, damping ratio and spectral radius; lengths of time steps may differ. Raises InputError
-        for a file that is no such state.
+        settings: the same modes, damping ratio, spectral radius and conserving; lengths of time steps may differ.
+        Raises InputError for a file that is no such state.
         """
         run = Transient(problem, settings)
         run._reached = read_state(Path(path), problem, settings, run.bodies)
@@ -152,7 +156,8 @@ class Transient:
             motion.state.velocity[body.count :] for body, motion in zip(bodies, self._reached.motions)
         )
         return Moment(
-            self.time, solved.solution, velocities, solved.energy, self._reached.balance.work, length, solved.error
+            self.time, solved.solution, velocities, solved.energy, self._reached.balance.work, length, solved.error,
+            solved.systems,
         )  # fmt: skip
 
     def _accepted(self, before: Reached, loading: Loading, length: float) -> SolvedStep:
@@ -160,7 +165,7 @@ class Transient:
         while True:
             step = self._step_at(loading, before.time + length)
             try:
-                solved = solve_step(self.problem, self.bodies, self._scheme, before, step, length)
+                solved = self._solve_step(before, step, length)
             except ResultError:
                 if not self._lengths.can_shrink(length):
                     raise
@@ -170,6 +175,11 @@ class Transient:
                 return solved
             length = self._lengths.shorter(length, solved.error)
             before = replace(before, balance=before.balance.seen(solved.energy.total))
+
+    def _solve_step(self, before: Reached, step: Step, length: float) -> SolvedStep:
+        if self.settings.conserving:
+            return solve_conserving_step(self.problem, self.bodies, before, step, length, self._pairs)
+        return solve_step(self.problem, self.bodies, self._scheme, before, step, length)
 
     def _step_at(self, loading: Loading, time: float) -> Step:
         step = loading(time) if callable(loading) else loading

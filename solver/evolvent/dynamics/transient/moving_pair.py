@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from evolvent.contact.transient.time_scheme import LinearSystem
+from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem
 from evolvent.dynamics.modes.gear_modes import GearModes
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.gear_model import GearModel

@@ -1,8 +1,8 @@
 """A time step of a gear pair as the contact system of a position.
 
 With Φ the jumps of the contact by unit modes, H those by ψ, A the static compliance, D the matrix and b the known part
-of the time step (contact/transient/time_scheme.py), eliminating the modes leaves, at ψ_s where the flanks were searched
-and with ψ = ψ_s + δ,
+of the time step (contact/transient/time_schemes/time_scheme.py), eliminating the modes leaves, at ψ_s where the flanks
+were searched and with ψ = ψ_s + δ,
 
     J = Φ D_q⁻¹ (b_q − D_qψ ψ_s) + H' δ − (A − Φ (Ω⁻² − D_q⁻¹) Φᵀ) f ,    H' = H − Φ D_q⁻¹ D_qψ ,
     H'ᵀ f + D' δ = T + b_ψ − D_ψq D_q⁻¹ b_q − D' ψ_s ,                    D' = D_ψψ − D_ψq D_q⁻¹ D_qψ .
@@ -19,7 +19,7 @@ from evolvent.contact.newton.applied_compliance import with_modes
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.equilibrium import Equilibrium, with_components
 from evolvent.contact.newton.jump_compliance import JumpCompliance
-from evolvent.contact.transient.time_scheme import MotionState, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeStep
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.gears.contact.overlap_check import UnsearchedOverlap, overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.contact.newton.equilibrium import Equilibrium, frictional, frictionless, normal_part
-from evolvent.contact.transient.time_scheme import MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
 from evolvent.dynamics.transient.certificates import certify_step
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import MovingPair

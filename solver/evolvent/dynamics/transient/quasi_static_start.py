@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.contact.transient.time_scheme import MotionState
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_transient import PairState
 from evolvent.gears.sweep.contact_patch import ContactPatch

@@ -4,10 +4,10 @@ Momentum. With the forces p that the nodal sums give on modes and ψ, the state 
 
     M ((1 − α) a_{n+1} + α a_n) + D v_{n+1} + K z_{n+1} = p_{n+1} .
 
-Energy. That of the motion has an exact balance in time steps under any forces (contact/transient/scheme_energy.py),
-with the work of the contact forces by the trapezoidal rule. There is no exact one between this work and what the flanks
-store: other nodes and points are in contact at the end of a step than at its begin, the nominal rotation moves them on
-in between, and the normals are those before deflection. Over a step
+Energy. That of the motion has an exact balance in time steps under any forces, with the work of the contact forces by
+the trapezoidal rule (contact/transient/time_schemes/scheme_energy.py). There is no exact one between this work and what
+the flanks store: other nodes and points are in contact at the end of a step than at its begin, the nominal rotation
+moves them on in between, and the normals are those before deflection. Over a step
 
     rotation = given + friction + stored + (what is left)
 
@@ -25,8 +25,8 @@ from functools import cached_property
 import numpy as np
 
 from evolvent.contact.newton.equilibrium import Equilibrium, with_components
-from evolvent.contact.transient.scheme_energy import SchemeEnergy
-from evolvent.contact.transient.time_scheme import MotionState
+from evolvent.contact.transient.time_schemes.scheme_energy import SchemeEnergy
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.nodal_sums import NodalSums
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact

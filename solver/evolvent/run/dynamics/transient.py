@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.dynamics.results.transient import TransientCase, case_pressures, tooth_rows, transient_rows, write_rows
 from evolvent.dynamics.results.transient_facts import sentences, transient_facts, write_facts

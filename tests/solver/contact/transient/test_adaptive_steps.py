@@ -29,7 +29,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.transient import solver
 from evolvent.contact.transient.adaptive_steps import StepLengths
 from evolvent.contact.transient.one_step import SolvedStep
-from evolvent.contact.transient.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
 from evolvent_meshes.shapes.blocks import rectangle
 
 DENSITY, LOAD, DRIVE = 7.85e-9, 10.0, 2e4  # t/mm³, N/mm, rad/s

@@ -10,7 +10,7 @@ import scipy.sparse.linalg as spla
 from evolvent import Body, Contact, Fixed, InitialState, Problem, Rigid, Step, Traction, Transient, TransientSettings
 from evolvent.contact.problem.condensed_body import CondensedBody, condense_bodies
 from evolvent.contact.step.step_system import StepSystem
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.fem.boundary import Freedom
 from evolvent.fem.modes.mass_matrix import mass_matrix
 from evolvent_meshes.arrays import Floats

@@ -20,7 +20,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.contact.nitsche.flux_recovery import SAFETY
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import ModeChoice, gear_modes
 from evolvent.dynamics.transient.certificates import Unbalanced
 from evolvent.dynamics.transient.kept_contacts import KeptContacts

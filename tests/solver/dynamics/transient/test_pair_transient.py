@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.steady_state import until_steady
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from evolvent.contact.transient.time_scheme import MotionState, TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme
 from evolvent.dynamics.transient import pair_transient
 from evolvent.dynamics.transient.certificates import EXACT, LIMITS, Unbalanced, certify_motion, certify_step
 from evolvent.dynamics.transient.moving_pair import MovingPair

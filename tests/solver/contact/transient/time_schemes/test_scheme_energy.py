@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from evolvent.contact.transient.scheme_energy import SchemeEnergy
-from evolvent.contact.transient.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.scheme_energy import SchemeEnergy
+from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 
 STEP, COUNT = 0.37, 4

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evolvent.contact.transient.time_scheme import LinearSystem, MotionState, TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme
 from evolvent_meshes.arrays import Floats
 
 

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -74,6 +75,39 @@ class MotionState:
     """v (m,)."""
     acceleration: Floats
     """a (m,), which the method keeps beside the motion: z̈ at t + αh, to second order."""
+
+
+class StepEquations(Protocol):
+    """A step of any method: A z = p + b, at the time at which it takes the forces p."""
+
+    @property
+    def system(self) -> LinearSystem:
+        """What moves."""
+        ...
+
+    @property
+    def state(self) -> MotionState:
+        """At its begin."""
+        ...
+
+    @property
+    def length(self) -> float:
+        """h [s]."""
+        ...
+
+    @property
+    def matrix(self) -> Floats:
+        """A (m, m)."""
+        ...
+
+    @property
+    def known(self) -> Floats:
+        """b (m,)."""
+        ...
+
+    def after(self, position: Floats) -> MotionState:
+        """The state at its end, from z (m,)."""
+        ...
 
 
 @dataclass(frozen=True)

@@ -22,16 +22,25 @@ class Setting:
 
     modes:  natural modes of the bar that have inertia.
     steps:  time steps in 2L/c.
-    radius: ρ_∞.
+    radius: ρ_∞; None: steps that conserve energy.
     """
 
     modes: int
     steps: int
-    radius: float
+    radius: float | None
 
     def __str__(self) -> str:
         modes = f"{self.modes} modes" if self.modes else "no modes"
-        return f"{modes}, {self.steps} steps, ρ_∞ = {self.radius:g}"
+        method = "conserving" if self.radius is None else f"ρ_∞ = {self.radius:g}"
+        return f"{modes}, {self.steps} steps, {method}"
+
+    @property
+    def method(self) -> TransientSettings:
+        """As a transient takes it."""
+        step = PASSAGE / self.steps
+        if self.radius is None:
+            return TransientSettings(step, self.modes, conserving=True)
+        return TransientSettings(step, self.modes, spectral_radius=self.radius)
 
 
 @dataclass(frozen=True)
@@ -40,10 +49,12 @@ class Bounces:
 
     energy:   (n,), over that at the start.
     touching: (n, 2), whether it touches the lower and the upper wall.
+    systems:  contact systems that were solved, mean over the time steps.
     """
 
     energy: Floats
     touching: Bools
+    systems: float
 
     @property
     def impacts(self) -> int:
@@ -64,21 +75,19 @@ class Bounces:
 
     @property
     def growth(self) -> float:
-        """The largest of the energy at any time over that at the start."""
+        """The largest growth of the energy at any time over that at the start."""
         return float(self.energy.max()) - 1.0  # not negative: the start is among them
+
+    @property
+    def loss(self) -> float:
+        """The largest share of the energy at the start that is missing at any time."""
+        return 1.0 - float(self.energy.min())
 
     @property
     def regained(self) -> float:
         """The largest growth of the energy in flight over that of any flight before."""
         energy = self.in_flight[1]
         return float((energy / np.minimum.accumulate(energy)).max()) - 1.0
-
-    @property
-    def round_trip(self) -> float:
-        """Time steps from a wall to the other one and back, mean over the second half of the impacts."""
-        steps = np.repeat(np.arange(len(self.energy)), self._met.astype(int))
-        late = steps[len(steps) // 2 :]
-        return 2.0 * float(late[-1] - late[0]) / (len(late) - 1)
 
     @property
     def _met(self) -> Floats:
@@ -111,14 +120,13 @@ def walls() -> MeshData:
 
 def bounced(setting: Setting, impacts: int) -> Bounces:
     """Until there have been so many impacts, or less than LEAST of the energy is left."""
-    settings = TransientSettings(PASSAGE / setting.steps, setting.modes, spectral_radius=setting.radius)
-    run = Transient(problem(), settings, InitialState(velocities={0: (0.0, -SPEED)}))
-    energy, touching, met = [1.0], [np.zeros(2, dtype=bool)], 0
+    run = Transient(problem(), setting.method, InitialState(velocities={0: (0.0, -SPEED)}))
+    energy, touching, met, systems = [1.0], [np.zeros(2, dtype=bool)], 0, 0
     while met < impacts and energy[-1] > LEAST:
         moment = run.solve()
-        contact = moment.solution.contacts[0]
+        contact, systems = moment.solution.contacts[0], systems + moment.systems
         above = contact.points[:, 1] > 0.5 * LENGTH
         energy.append(moment.energy.total / (0.5 * STEEL.density * LENGTH * SPEED**2))
         touching.append(np.array([(contact.pressure[side] > 0.0).any() for side in (~above, above)]))
         met += int((touching[-1] & ~touching[-2]).sum())
-    return Bounces(np.array(energy), np.array(touching))
+    return Bounces(np.array(energy), np.array(touching), systems / (len(energy) - 1))

@@ -35,8 +35,9 @@ PROBLEM = f"""
 A steel block of {SIDE:g} × {SIDE:g} mm lies on another one, plane strain, pressed by {PRESSURE:g} MPa; within
 {1e6 * DURATION:g} µs the pressure rises by {100 * RISE:g} % and falls again, like sin⁴. The upper block has
 {MODES} natural modes, of {100 * DAMPING:g} % damping, and moves as a whole; the contact stays closed everywhere, so the
-motion is that of a linear system, and the method of Wood, Bossak and Zienkiewicz is of second order (ρ_∞ = 0.8).
-Root mean squares over {STEPS[0]} times, over the largest change, against {REFERENCE} time steps.
+motion is that of a linear system, and the method of Wood, Bossak and Zienkiewicz is of second order (ρ_∞ = 0.8). So is
+the one that conserves energy (`conserving`), and both have the same limit. Root mean squares over {STEPS[0]} times,
+over the largest change, against {REFERENCE} time steps of the former.
 """
 
 
@@ -77,9 +78,10 @@ def problem() -> Problem:
     return Problem(bodies, (Contact((0, "bottom"), (1, "top")),))
 
 
-def course(steps: int) -> Course:
+def course(steps: int, conserving: bool = False) -> Course:
     """steps: time steps of the duration, a multiple of STEPS[0]."""
-    run = Transient(problem(), TransientSettings(DURATION / steps, MODES, DAMPING), InitialState(Step()))
+    settings = TransientSettings(DURATION / steps, MODES, DAMPING, conserving=conserving)
+    run = Transient(problem(), settings, InitialState(Step()))
     moments = list(run.run([Step(float(factor)) for factor in load(np.arange(1, steps + 1) / steps)]))
     every = moments[steps // STEPS[0] - 1 :: steps // STEPS[0]]
     return Course(
@@ -95,6 +97,7 @@ def verify() -> Verification:
     courses = {steps: course(steps) for steps in (*STEPS, REFERENCE)}
     exact = courses[REFERENCE]
     errors = np.array([courses[steps].errors(exact) for steps in STEPS])
+    conserving = np.array([course(steps, conserving=True).errors(exact) for steps in STEPS])
     method = analytical("Wood, Bossak and Zienkiewicz 1980: second order")
     return Verification(
         "pressed_block",
@@ -104,6 +107,12 @@ def verify() -> Verification:
             *(
                 method.at_least(f"order of convergence of the {name} in the time step", order_of(STEPS, each), 2.0, 0.1)
                 for name, each in zip(QUANTITIES, errors.T)
+            ),
+            *(
+                analytical("Gonzalez 1996: second order").at_least(
+                    f"order of convergence of the {name} in the time step, conserving", order_of(STEPS, each), 2.0, 0.1
+                )
+                for name, each in zip(QUANTITIES, conserving.T)
             ),
             analytical("pressed everywhere").absolute(
                 "least share of the points of contact that press", min(each.closed for each in courses.values()), 1.0,

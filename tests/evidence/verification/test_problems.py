@@ -24,7 +24,7 @@ from evolvent.results.drawing.style import sheet
 @cache
 def solved(name: str) -> Verification:
     """Solved once for all tests; a thousand impacts take minutes, twenty show the same."""
-    return thousand_impacts.verify(impacts=20, phases=4) if name == "thousand_impacts" else PROBLEMS[name]()
+    return thousand_impacts.verify(impacts=20, short=20, phases=4) if name == "thousand_impacts" else PROBLEMS[name]()
 
 
 @pytest.mark.slow

@@ -126,7 +126,7 @@ def draw(figure: Figure, runs: Mapping[Setting, Bounces], blows: Mapping[tuple[f
     for (setting, run), colour, style in zip(runs.items(), (PINION, WHEEL) * 2, ("-", "--", ":", "-.")):
         left.plot(*run.in_flight, style, color=colour, lw=1.5, label=_drawn(str(setting)))
     left.axhline(1.0, color=FAINT, lw=1.0)
-    left.set(xlabel="impacts", ylabel="energy in flight / energy at the start", ylim=(0.0, 1.25))
+    left.set(xlabel="impacts", ylabel="energy in flight / energy at the start", xscale="log", ylim=(0.0, 1.7))
     left.legend(loc="upper right")
     _phases(middle, blows)
     _means(right, blows)

@@ -14,7 +14,7 @@ import numpy as np
 
 from evidence.checkout import DEMOS
 from evidence.pages.papers.kept_runs.kept import Named
-from evolvent.contact.transient.time_scheme import MotionState, TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme
 from evolvent.dynamics.transient.driven_pair import driven_pair, resolved_modes
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import MovingPair

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evidence.robustness.campaigns.random_scenes import random_scene
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import ModeChoice, gear_modes
 from evolvent.dynamics.transient import kept_contacts
 from evolvent.dynamics.transient.kept_contacts import KeptContacts

@@ -13,7 +13,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.contact.newton.applied_compliance import AppliedCompliance
-from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.dynamics.modes.mode_meshes import mode_mesh
 from evolvent.dynamics.transient.kept_contacts import KeptContacts

@@ -68,9 +68,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "contact.nitsche",
         "gears.problem", "gears.meshing", "gears.two_level", "gears",
     ),
+    "dynamics.transient.step_lengths": ("meshes", "contact.transient.time_schemes"),
     "dynamics.transient": (
         "meshes", "meshes.gears", "contact.newton", "contact.transient.time_schemes", "gears.problem", "gears.ring",
-        "gears", "gears.contact", "gears.sweep", "dynamics", "dynamics.modes",
+        "gears", "gears.contact", "gears.sweep", "dynamics", "dynamics.modes", "dynamics.transient.step_lengths",
     ),
     "strength.standard": ("meshes", "meshes.gears"),
     "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.support.scene_texts import HE, WEAR, YANG
 
+TRANSIENT = "transient.speeds_rpm=[1500]"
 WRONG_VALUES: dict[str, tuple[str, list[str], str, str, str]] = {
     # out of range
     "zero torque": (YANG, ["load.torque_Nm=0"], "load.torque_Nm", "0", "give a torque above 0"),
@@ -97,6 +98,13 @@ WRONG_VALUES: dict[str, tuple[str, list[str], str, str, str]] = {
         YANG, [f"contact.friction={[k / 1000 for k in range(1000)]}"], "contact.friction", "[0, 0.001", "0 is friction",
     ),
     "a thousand wrong coefficients": (YANG, [f"contact.friction={[-1.0] * 1000}"], "contact.friction[0]", "-1", "0 is"),
+    "steps without error": (HE, [TRANSIENT, "transient.tolerance=0"], "transient.tolerance", "0", "delete the key"),
+    "steps' error in percent": (HE, [TRANSIENT, "transient.tolerance=5"], "transient.tolerance", "5", "0.01 is coarse"),
+    "step of no number": (HE, [TRANSIENT, "transient.tolerance=nan"], "transient.tolerance", "nan", "0.01 is coarse"),
+    "undivided steps": (HE, [TRANSIENT, "transient.most_parts=1"], "transient.most_parts", "1", "64 is the default"),
+    "steps divided by three": (HE, [TRANSIENT, "transient.most_parts=48"], "transient.most_parts", "48", "64 is the"),
+    "steps divided too often": (HE, [TRANSIENT, "transient.most_parts=2048"], "transient.most_parts", "2048", "64 is"),
+    "speed twice": (HE, ["transient.speeds_rpm=[1500,1500]"], "transient.speeds_rpm", "[1500, 1500]", "give each once"),
     "a thousand reports": (
         HE, [*WEAR, f"wear.report_at_cycles={list(range(1, 1000))}"], "wear.report_at_cycles", "[1, 2", "give a list",
     ),

@@ -41,7 +41,16 @@ class TransientFacts:
     natural_frequency_Hz: float
     """Of the rotation of the gears on their mesh, by its mean tangent stiffness in statics."""
     steps_per_natural_period: float
-    """Time steps in a period of it; of fewer than eight what the mesh excites of it is not resolved."""
+    """Time steps in a period of it, in the mean; of fewer than eight, all equal, what the mesh excites of it is not
+    resolved."""
+    time_steps: int
+    """In the last mesh period."""
+    shortest_step_s: float
+    """The shortest of them."""
+    rejected_steps: int
+    """That were taken again in half, in the last mesh period; none without transient.tolerance."""
+    step_error: float
+    """The largest estimated error of the speeds in one of its time steps, as transient.tolerance bounds it."""
     mean_force_N: float
     """Of the mesh, over the last period."""
     load_N: float
@@ -52,7 +61,7 @@ class TransientFacts:
     static_peak_to_peak_um: float
     """The same without inertia."""
     dynamic_factor: float
-    """Largest mesh force over the load."""
+    """Largest mesh force over the load, at the ends of all time steps of the last mesh period."""
     separated: float
     """Share of the positions at which nothing touches."""
     max_pressure_MPa: float
@@ -89,18 +98,19 @@ def transient_facts(
     lowest = float(frequencies.min() / (2.0 * np.pi)) if len(frequencies) else None
     for each in pressures:
         case, found, (moving, still) = each.case, each.case.found, each.peaks()
-        force, load = np.array([moment.mesh_force for moment in found.moments]), case.load
+        load = case.load
         errors = np.array([result.transmission_error for result in case.results])
         stiffness = float(np.mean([still.stiffness for still in case.static]))
         natural = float(np.sqrt(stiffness / mass)) / (2.0 * np.pi)
         worst, energies, passed = found.residuals, found.energies, found.energies.passed
-        step = found.moments[-1].time - found.moments[-2].time
+        steps = found.steps
+        step = (found.moments[-1].time - found.moments[-2].time) / (steps.accepted / len(found.moments))
         facts.append(TransientFacts(
             case.speed, case.friction, found.periods, float(found.changes[-1]) if len(found.changes) else None,
-            found.is_steady, len(frequencies), lowest, natural, 1.0 / (natural * step), width * found.mean_force,
-            width * load,
+            found.is_steady, len(frequencies), lowest, natural, 1.0 / (natural * step),
+            steps.accepted, steps.shortest, steps.rejected, steps.error, width * found.mean_force, width * load,
             UM * float(np.ptp(errors)), UM * float(np.ptp([still.transmission_error for still in case.static])),
-            float(force.max() / load), float(np.mean([len(result.contact.tooth) == 0 for result in case.results])),
+            steps.largest_force / load, float(np.mean([len(result.contact.tooth) == 0 for result in case.results])),
             _largest(moving), _largest(still), worst.momentum, worst.reaction, worst.moment, worst.motion,
             worst.exchange, abs(energies.left) / passed, energies.friction / passed, energies.damping / passed,
             energies.numerical / passed,
@@ -114,14 +124,17 @@ def write_facts(folder: RunFolder, facts: Sequence[TransientFacts]) -> None:
     folder.write_text(TRANSIENT_FACTS, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
 
 
-def sentences(facts: Sequence[TransientFacts], positions: int) -> list[str]:
-    """On motions that are not steady, and on speeds at which time steps are too long. positions: of a mesh period."""
+def sentences(facts: Sequence[TransientFacts], positions: int, tolerance: float | None) -> list[str]:
+    """On motions that are not steady, and on speeds at which time steps are too long. positions: of a mesh period;
+    tolerance: of the estimated error of a step, None for equal steps."""
     unsteady = [
         f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: not steady after {fact.mesh_periods} mesh periods; raise "
         "transient.mesh_periods, or look whether the motion repeats after several meshes (`evolvent dynamics`)"
         for fact in facts
         if not fact.steady
     ]
+    if tolerance is not None:
+        return unsteady + [_beyond(fact, tolerance) for fact in facts if fact.step_error > tolerance]
     coarse = {fact.speed_rpm: fact for fact in facts if fact.steps_per_natural_period < ENOUGH_STEPS}
     return unsteady + [
         f"{speed:g} r/min: the pair's own vibration of {fact.natural_frequency_Hz:.0f} Hz has "
@@ -130,6 +143,16 @@ def sentences(facts: Sequence[TransientFacts], positions: int) -> list[str]:
         "resolves it, transient.spectral_radius = 0 leaves statics where that is too many"
         for speed, fact in coarse.items()
     ]
+
+
+def _beyond(fact: TransientFacts, tolerance: float) -> str:
+    """That the shortest step is too long for the tolerance."""
+    return (
+        f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: wanted an error of a time step of at most "
+        f"transient.tolerance = {tolerance:g}, found {fact.step_error:.2g} with the shortest one of "
+        f"{fact.shortest_step_s:.3g} s; raise transient.most_parts or the tolerance, or lower "
+        "transient.modes_per_harmonic"
+    )
 
 
 def _largest(pressures: Floats) -> float:

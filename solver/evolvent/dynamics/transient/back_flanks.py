@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 
 
@@ -10,9 +9,8 @@ class BackFlanks(ResultError):
     """A motion in which the back flanks would touch, which are not modelled."""
 
 
-def require_backlash(errors: Floats, backlash: float, where: str) -> None:
-    """Raises BackFlanks where a transmission error (n,) [mm] goes beyond the backlash [mm]."""
-    lowest = float(errors.min())
+def require_backlash(lowest: float, backlash: float, where: str) -> None:
+    """Raises BackFlanks where the lowest transmission error [mm] goes beyond the backlash [mm]."""
     if lowest < -backlash:
         raise BackFlanks(
             f"{where}: wanted a motion within the backlash of {1e3 * backlash:.3g} µm, found a transmission error of "

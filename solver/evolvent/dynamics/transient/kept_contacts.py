@@ -1,4 +1,5 @@
-"""The contacts of a mesh period's positions, searched once each and kept.
+"""The contacts of a mesh period's positions, and of those that time steps between them end at, searched once each and
+kept.
 
 The gap of a position is linear in ψ near where it was searched. Searches are made at whole multiples of twice
 `search_window`'s reach, so that a pair that vibrates needs one or a few for each position.
@@ -37,24 +38,27 @@ class KeptContacts:
     pair: MovingPair
     """With inertia."""
     positions: int
-    """Time steps of a mesh period."""
+    """Of a mesh period, n. Position 3.5 is midway between 3 and 4, n is 0 a pitch later."""
     components: int
     """k: 1 without friction, else the dimension of space."""
     most: float = np.inf
     """Memory that may be kept [bytes]; what has no room is searched again each time. The first ones are kept: as each
     period needs all of them in turn, dropping the oldest would keep none that is needed next."""
-    kept: dict[tuple[int, int, float], SearchedContact] = field(default_factory=dict, repr=False)
+    kept: dict[tuple[float, int, float], SearchedContact] = field(default_factory=dict, repr=False)
     """By position, multiple and half-width of the window."""
 
     @property
     def step_angle(self) -> float:
-        """Of the pinion [rad]."""
+        """Of the pinion between two positions [rad]."""
         return 2.0 * np.pi / self.pair.model.pair.pinion.z / self.positions
 
     def solved(
-        self, phase: int, predicted: float, solve: Callable[[SearchedContact], Equilibrium]
+        self, phase: float, predicted: float, solve: Callable[[SearchedContact], Equilibrium]
     ) -> tuple[SearchedContact, Equilibrium]:
-        """The solution of a position, on the contact searched near to it. predicted: ψ [rad]. Raises NotConverged."""
+        """The solution of a position, on the contact searched near to it. predicted: ψ [rad].
+
+        Raises NotConverged, SearchError.
+        """
         multiple, half_width = round(predicted / self._spacing), WIDER * self.pair.model.half_width
         for _ in range(ROUNDS):
             at = self._at(phase, multiple, half_width)
@@ -74,7 +78,7 @@ class KeptContacts:
             f"after {ROUNDS} searches; take more positions"
         )
 
-    def _at(self, phase: int, multiple: int, half_width: float) -> SearchedContact:
+    def _at(self, phase: float, multiple: int, half_width: float) -> SearchedContact:
         key = phase, multiple, half_width
         if key in self.kept:
             return self.kept[key]

@@ -1,30 +1,35 @@
-"""A gear pair over time at constant nominal speed, in equal steps of a mesh period.
+"""A gear pair over time at constant nominal speed, from one position of a mesh period to the next, in one time step or
+in equal parts of it (step_lengths/divided_steps.py).
 
-Positions repeat with the mesh, so that search, compliance and modes of each are kept and used again: from the second
-mesh period on a step is the solution of its contact system alone.
+Positions and parts repeat with the mesh, so that search, compliance and modes of each are kept and used again: from the
+second mesh period on a step is the solution of its contact system alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 
 from evolvent.contact.newton.equilibrium import Equilibrium, frictional, frictionless, normal_part
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
-from evolvent.dynamics.transient.certificates import certify_step
+from evolvent.dynamics.transient.certificates import WITHIN, certify_step
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.nodal_sums import NodalSums
+from evolvent.dynamics.transient.pair_state import PairState, SolvedStep
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
-from evolvent.dynamics.transient.step_balance import Residuals, StepBalance, StepEnd, StepEnergies, stored_energy
+from evolvent.dynamics.transient.step_balance import Residuals, StepBalance, StepEnergies, stored_energy
+from evolvent.dynamics.transient.step_lengths.divided_steps import UNDIVIDED, DividedSteps, StepsTaken, part
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.friction_history import FrictionHistory, previous_jumps
 from evolvent.gears.sweep.position_result import PositionResult, position_result
 from evolvent.gears.sweep.slip import slip_direction, slip_increment
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.member import Member
 
 NO_STIFFNESS = float("nan")
@@ -32,24 +37,8 @@ NO_STIFFNESS = float("nan")
 
 
 @dataclass(frozen=True)
-class PairState:
-    """What the next time step begins with."""
-
-    motion: MotionState
-    """Modes and ψ."""
-    history: FrictionHistory | None
-    """Of friction, None without it."""
-    vibration: Floats
-    """(m,) amplitudes of the modes beyond those by the contact forces in statics."""
-    patch: ContactPatch | None = None
-    """The last contact patch, None where it is not known or nothing touched."""
-    before: StepEnd | None = None
-    """For the balance of the next step, None where there is no step before."""
-
-
-@dataclass(frozen=True)
 class PairMoment:
-    """A pair at the end of a time step: what tables say of it."""
+    """A pair at a position, and the way there from the one before: what tables say of it."""
 
     time: float
     """[s]."""
@@ -60,9 +49,11 @@ class PairMoment:
     rate: float
     """Of the transmission error [mm/s]."""
     residuals: Residuals
-    """Of the balances of the step."""
+    """Of the balances: the largest of all steps."""
     energies: StepEnergies
-    """Of the step."""
+    """Of all steps."""
+    steps: StepsTaken
+    """How many there are, how long, and what happens in them."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +77,9 @@ class PairTransient:
     scheme: TimeScheme
     """Of the time steps."""
     contacts: KeptContacts
-    """Of the positions of a mesh period."""
+    """Of the positions of a mesh period, and of the parts between them."""
+    division: DividedSteps = UNDIVIDED
+    """Rules for the parts."""
 
     @property
     def name(self) -> str:
@@ -95,17 +88,17 @@ class PairTransient:
 
     @property
     def time_step(self) -> float:
-        """[s]."""
+        """From one position to the next [s]: the longest time step."""
         return self.contacts.step_angle / self.speed
 
     def run(self, state: PairState, periods: int) -> Iterator[MovingMoment]:
-        """Time steps of so many mesh periods, from a state at pinion rotation 0, each of them in balance. Raises
+        """The positions of so many mesh periods, from a state at pinion rotation 0, each time step in balance. Raises
         NotConverged, SearchError, Unbalanced."""
         count = self.contacts.positions
         for n in range(1, periods * count + 1):
             if n % count == 0:
                 state = self._earlier(state)
-            moment = self._advanced(state, n % count, n * self.time_step)
+            moment = self._advanced(state, n)
             state = moment.state
             yield moment
 
@@ -117,18 +110,58 @@ class PairTransient:
         before = None if state.before is None else state.before.earlier(pair)
         return replace(state, motion=motion, history=history, vibration=pair.earlier(state.vibration, 1), before=before)
 
-    def _advanced(self, state: PairState, phase: int, time: float) -> MovingMoment:
-        """The next time step. Raises NotConverged, SearchError, Unbalanced."""
-        step = PairStep(self.pair, TimeStep(self.pair.system, self.scheme, state.motion, self.time_step))
-        predicted = float(state.motion.position[-1] + self.time_step * state.motion.velocity[-1])
-        at, found = self.contacts.solved(phase, predicted, lambda at: self._equilibrium(step, at, state))
-        moment = self._moment(step, at, found, state.before, time)
-        degrees = np.degrees(phase * self.contacts.step_angle)
-        certify_step(moment.residuals, state.before is None, f"{self.name}, pinion at {degrees:.3f}°")
+    def _advanced(self, state: PairState, n: int) -> MovingMoment:
+        """Position n since the start, from the one before. Raises NotConverged, SearchError, Unbalanced."""
+        is_first, reached, steps = state.before is None, n - 1.0, []
+        while reached < n:
+            solved, rejected = self._accepted(state, n, reached)
+            reached += part(solved.halvings)
+            moment = self._moment(solved, reached, rejected)
+            certify_step(moment.residuals, state.before is None, self._where(n, reached), WITHIN)
+            state = moment.state
+            steps.append(moment)
+        moment = _joined(steps)
+        certify_step(moment.residuals, is_first, self._where(n, reached))
         return moment
 
-    def _equilibrium(self, step: PairStep, at: SearchedContact, state: PairState) -> Equilibrium:
-        """Of the contact at the end of a step. Raises NotConverged."""
+    def _where(self, n: int, reached: float) -> str:
+        """See `_phase`, for messages."""
+        degrees = np.degrees(self._phase(n, reached) * self.contacts.step_angle)
+        return f"{self.name}, pinion at {degrees:.3f}°"
+
+    def _phase(self, n: int, reached: float) -> float:
+        """Where a pair stands in the mesh period, on its way to position n: `reached` counts from the start."""
+        return n % self.contacts.positions + (reached - n)
+
+    def _accepted(self, state: PairState, n: int, reached: float) -> tuple[SolvedStep, int]:
+        """The next time step, taken again in half until it counts, and how often it was. Raises NotConverged,
+        SearchError."""
+        halvings = state.halvings
+        while True:
+            try:
+                solved = self._solved(state, n, reached, halvings)
+                if self.division.accepts(halvings, solved.error):
+                    return solved, halvings - state.halvings
+            except ResultError:
+                if not self.division.can_halve(halvings):
+                    raise
+            halvings += 1
+
+    def _solved(self, state: PairState, n: int, reached: float, halvings: int) -> SolvedStep:
+        """A time step of this length. Raises NotConverged, SearchError."""
+        way = part(halvings)
+        begin, length = state.for_step(self.pair, self.scheme, way * self.time_step), way * self.time_step
+        step = PairStep(self.pair, TimeStep(self.pair.system, self.scheme, begin.motion, length))
+        predicted = float(begin.motion.position[-1] + length * begin.motion.velocity[-1])
+        span = way * self.contacts.step_angle
+        at, found = self.contacts.solved(
+            self._phase(n, reached + way), predicted, lambda at: self._equilibrium(step, at, begin, span)
+        )
+        stored = stored_energy(self.pair, at, found)
+        return SolvedStep(step, begin, halvings, at, found, step.state(at, found), stored)
+
+    def _equilibrium(self, step: PairStep, at: SearchedContact, state: PairState, span: float) -> Equilibrium:
+        """Of the contact at the end of a step in which the pinion turns by `span` [rad]. Raises NotConverged."""
         system, geometry = step.system(at), at.contact.geometry
         start = None if state.patch is None else state.patch.at(geometry)
         smooth = frictionless(normal_part(system), start if start is not None and start.any() else None)
@@ -139,37 +172,52 @@ class PairTransient:
             return self.pair.vibration(member, geometry.rows(member)[0], state.vibration)
 
         (before,) = previous_jumps(geometry, [state.history], vibration)
-        slip = slip_increment(geometry, before, self.contacts.step_angle)
+        slip = slip_increment(geometry, before, span)
         rough = frictional(system, self.friction, slip, slip_direction(geometry), smooth)
         return replace(rough, iterations=smooth.iterations + rough.iterations)
 
-    def _moment(
-        self, step: PairStep, at: SearchedContact, found: Equilibrium, before: StepEnd | None, time: float
-    ) -> MovingMoment:
-        pair, motion = self.pair, step.state(at, found)
-        ψ = float(motion.position[-1])
-        stand = replace(at.contact.stand, extra=pair.drive.rotations(ψ))
+    def _moment(self, solved: SolvedStep, reached: float, rejected: int) -> MovingMoment:
+        """The end of a time step that counts, so many positions after the start."""
+        pair, at, found, motion, before = self.pair, solved.at, solved.found, solved.motion, solved.begin.before
+        stand = replace(at.contact.stand, extra=pair.drive.rotations(float(motion.position[-1])))
         result = replace(
             position_result(pair.model, at.contact, found, self.friction, NO_STIFFNESS, 0), stand=stand
         )
-        sums = NodalSums.of(pair, at.contact.stand, result)
-        stored = stored_energy(pair, at, found)
-        balance = StepBalance(step, self.contacts.step_angle, motion, result, sums, stored)
+        sums, span = NodalSums.of(pair, at.contact.stand, result), part(solved.halvings) * self.contacts.step_angle
+        balance = StepBalance(solved.step, span, motion, result, sums, solved.stored)
+        turned = at.turned.reshape(found.force.shape[0], at.k)[:, : found.force.shape[1]]
+        force, length = float(np.sum(turned * found.force)) / pair.lever, solved.step.step.length
         state = PairState(
             motion, self._history(at, found, stand), motion.position[:-1] - pair.static(sums.modal),
-            _patch(at, found), balance.end,
+            _patch(at, found), balance.end, length, self._following(solved, reached, rejected), force, solved.energy,
         )  # fmt: skip
-        turned = at.turned.reshape(found.force.shape[0], at.k)[:, : found.force.shape[1]]
-        force = float(np.sum(turned * found.force)) / pair.lever
+        impulse = 0.5 * length * (force + (force if solved.begin.mesh_force is None else solved.begin.mesh_force))
+        steps = StepsTaken(1, rejected, length, solved.error, impulse, force, result.transmission_error)
         return MovingMoment(
-            time, result, force, float(motion.velocity[-1]) * pair.lever, balance.residuals(before),
-            balance.energies(before), state,
+            reached * self.time_step, result, force, float(motion.velocity[-1]) * pair.lever,
+            balance.residuals(before), balance.energies(before), steps, state,
         )  # fmt: skip
+
+    def _following(self, solved: SolvedStep, reached: float, rejected: int) -> int:
+        """Halvings of the step after one that counts."""
+        k = solved.halvings
+        return k if rejected else self.division.after(k, solved.error, reached)
 
     def _history(self, at: SearchedContact, found: Equilibrium, stand: Stand) -> FrictionHistory | None:
         if not self.friction:
             return None
         return replace(FrictionHistory.of(self.pair.model, at.contact, found), stand=stand)
+
+
+def _joined(steps: Sequence[MovingMoment]) -> MovingMoment:
+    """The last one, with the balances and energies of all."""
+    last = steps[-1]
+    if len(steps) == 1:
+        return last
+    worst = reduce(Residuals.larger, (step.residuals for step in steps))
+    energies = StepEnergies.summed(step.energies for step in steps)
+    worst = replace(worst, exchange=abs(energies.left) / energies.passed)
+    return replace(last, residuals=worst, energies=energies, steps=StepsTaken.joined(step.steps for step in steps))
 
 
 def _patch(at: SearchedContact, found: Equilibrium) -> ContactPatch | None:

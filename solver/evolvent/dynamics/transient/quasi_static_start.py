@@ -9,7 +9,7 @@ import numpy as np
 
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState
 from evolvent.dynamics.transient.moving_pair import MovingPair
-from evolvent.dynamics.transient.pair_transient import PairState
+from evolvent.dynamics.transient.pair_state import PairState
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.friction_history import FrictionHistory
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch

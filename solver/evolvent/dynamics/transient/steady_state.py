@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.dynamics.transient.pair_transient import PairMoment, PairState, PairTransient
+from evolvent.dynamics.transient.pair_state import PairState
+from evolvent.dynamics.transient.pair_transient import PairMoment, PairTransient
 from evolvent.dynamics.transient.step_balance import NOTHING_KNOWN, Residuals, StepEnergies
+from evolvent.dynamics.transient.step_lengths.divided_steps import StepsTaken
 from evolvent_meshes.arrays import Floats
 
 
@@ -25,6 +27,8 @@ class MeshPeriods:
     """Change at which it counts as steady."""
     residuals: Residuals
     """The largest of all time steps."""
+    lowest_error: float
+    """Of transmission, the lowest at the ends of all time steps [mm]."""
 
     @property
     def periods(self) -> int:
@@ -38,8 +42,17 @@ class MeshPeriods:
 
     @property
     def mean_force(self) -> float:
-        """Of the mesh over the last period [N; N/mm in 2D]: in a steady state the load's, as no momentum is left."""
-        return float(np.mean([moment.mesh_force for moment in self.moments]))
+        """Of the mesh over the last period [N; N/mm in 2D]: in a steady state the load's, as no momentum is left. The
+        mean of its positions where these are all time steps, else the impulse over the time."""
+        if self.steps.accepted == len(self.moments):
+            return float(np.mean([moment.mesh_force for moment in self.moments]))
+        way = self.moments[-1].time - self.moments[-2].time
+        return self.steps.impulse / (len(self.moments) * way)
+
+    @property
+    def steps(self) -> StepsTaken:
+        """Time steps of the last period."""
+        return StepsTaken.joined(moment.steps for moment in self.moments)
 
     @property
     def energies(self) -> StepEnergies:
@@ -52,10 +65,10 @@ def until_steady(transient: PairTransient, start: PairState, most: int, wanted: 
     next, `most` at most. Raises NotConverged, SearchError, Unbalanced."""
     count, errors, changes = transient.contacts.positions, [], []
     moments: list[PairMoment] = []
-    residuals = NOTHING_KNOWN
+    residuals, lowest = NOTHING_KNOWN, np.inf
     for moment in transient.run(start, most):
         moments.append(moment)
-        residuals = residuals.larger(moment.residuals)
+        residuals, lowest = residuals.larger(moment.residuals), min(lowest, moment.steps.lowest_error)
         errors.append(moment.result.transmission_error)
         if len(moments) < count:
             continue
@@ -66,4 +79,4 @@ def until_steady(transient: PairTransient, start: PairState, most: int, wanted: 
             changes.append(float(np.abs(last - before).max() / max(np.ptp(last), 1e-300)))
             if changes[-1] <= wanted:
                 break
-    return MeshPeriods(tuple(period), np.array(errors), np.array(changes), wanted, residuals)
+    return MeshPeriods(tuple(period), np.array(errors), np.array(changes), wanted, residuals, lowest)

@@ -5,9 +5,10 @@ Momentum. With the forces p that the nodal sums give on modes and ψ, the state 
     M ((1 − α) a_{n+1} + α a_n) + D v_{n+1} + K z_{n+1} = p_{n+1} .
 
 Energy. That of the motion has an exact balance in time steps under any forces, with the work of the contact forces by
-the trapezoidal rule (contact/transient/time_schemes/scheme_energy.py). There is no exact one between this work and what
-the flanks store: other nodes and points are in contact at the end of a step than at its begin, the nominal rotation
-moves them on in between, and the normals are those before deflection. Over a step
+the trapezoidal rule (contact/transient/time_schemes/scheme_energy.py), also of a step of another length than the one
+before (step_lengths/changed_length.py). There is no exact one between this work and what the flanks store: other nodes
+and points are in contact at the end of a step than at its begin, the nominal rotation moves them on in between, and the
+normals are those before deflection. Over a step
 
     rotation = given + friction + stored + (what is left)
 
@@ -81,7 +82,8 @@ class StepEnergies:
     damping: float
     """Lost to the damping of mesh and modes."""
     numerical: float
-    """Taken out by the time scheme."""
+    """Taken out by the time scheme, less what the same state has more of its energy where steps change their length.
+    """
 
     @staticmethod
     def summed(steps: Iterable[StepEnergies]) -> StepEnergies:
@@ -108,6 +110,14 @@ class StepEnd:
     """Energy of modes and ψ as the scheme keeps it."""
     stored: float
     """Energy of rest and contact."""
+    converted: float = 0.0
+    """What `motion` is more than before the length of the steps changed."""
+
+    def in_steps_of(self, energy: SchemeEnergy, state: MotionState, before: Floats) -> StepEnd:
+        """The same for a step of another length, with the energy of its scheme: `state` and the acceleration one step
+        before it (m + 1,) are those of that length."""
+        motion = energy.of(state, before)
+        return replace(self, acceleration=before, motion=motion, converted=motion - self.motion)
 
     def earlier(self, pair: MovingPair) -> StepEnd:
         """The same a pitch earlier, where the other teeth stand as these do. Energies are the same."""
@@ -154,7 +164,7 @@ class StepBalance:
         rotation, friction = (0.5 * self.span * (one + other) for one, other in zip(before.powers, end.powers))
         return StepEnergies(
             passed, rotation, given, friction, end.stored - before.stored, self._energy.damped(begin, self.state),
-            self._energy.taken(before.acceleration, self.state),
+            self._energy.taken(before.acceleration, self.state) - before.converted,
         )  # fmt: skip
 
     def residuals(self, before: StepEnd | None) -> Residuals:
@@ -168,6 +178,7 @@ class StepBalance:
         moved = float(self.state.position[-1] - self.step.step.state.position[-1])
         worked, reached = self.step.pair.drive.torque * moved, self.end.motion
         missed = reached - before.motion - energies.given - worked + energies.damping + energies.numerical
+        missed += before.converted
         return abs(missed) / (reached + before.motion + abs(energies.given) + abs(worked))
 
     @property

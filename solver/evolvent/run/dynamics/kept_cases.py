@@ -19,6 +19,7 @@ import numpy as np
 from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.dynamics.transient.step_balance import Residuals, StepEnergies
+from evolvent.dynamics.transient.step_lengths.divided_steps import StepsTaken
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import ArchiveError, arrays_bytes, fingerprint, read_arrays
 from evolvent.results.archive.position_arrays import archived_result, result_arrays
@@ -70,10 +71,11 @@ class KeptCases:
         moments = found.moments
         arrays = _positions_arrays([moment.result for moment in moments], "") | {
             "positions": len(moments), "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
-            "residuals": astuple(found.residuals),
+            "residuals": astuple(found.residuals), "lowest_error": found.lowest_error,
             "moments": [(moment.time, moment.mesh_force, moment.rate) for moment in moments],
             "balances": [astuple(moment.residuals) for moment in moments],
             "energies": [astuple(moment.energies) for moment in moments],
+            "steps": [astuple(moment.steps) for moment in moments],
         }  # fmt: skip
         self._write(_name(number), arrays)
 
@@ -81,13 +83,15 @@ class KeptCases:
         return [tuple(self._positions(arrays, f"{i}/")) for i in range(int(arrays["count"]))]
 
     def _periods(self, arrays: dict[str, Any]) -> MeshPeriods:
-        columns = arrays["moments"].tolist(), arrays["balances"].tolist(), arrays["energies"].tolist()
+        columns = (arrays[name].tolist() for name in ("moments", "balances", "energies", "steps"))
         moments = [
-            PairMoment(time, result, force, rate, Residuals(*balances), StepEnergies(*energies))
-            for result, (time, force, rate), balances, energies in zip(self._positions(arrays, ""), *columns)
+            PairMoment(time, result, force, rate, Residuals(*balances), StepEnergies(*energies), _steps(*steps))
+            for result, (time, force, rate), balances, energies, steps in zip(self._positions(arrays, ""), *columns)
         ]
-        residuals = Residuals(*arrays["residuals"].tolist())
-        return MeshPeriods(tuple(moments), arrays["errors"], arrays["changes"], float(arrays["wanted"]), residuals)
+        return MeshPeriods(
+            tuple(moments), arrays["errors"], arrays["changes"], float(arrays["wanted"]),
+            Residuals(*arrays["residuals"].tolist()), float(arrays["lowest_error"]),
+        )  # fmt: skip
 
     def _positions(self, arrays: dict[str, Any], start: str) -> list[PositionResult]:
         return [archived_result(arrays, f"{start}{k}/", self.pair) for k in range(int(arrays["positions"]))]
@@ -109,6 +113,11 @@ class KeptCases:
 
     def _write(self, name: str, arrays: dict[str, Any]) -> None:
         self.folder.write(name, arrays_bytes({"identity": self.identity, **arrays}))
+
+
+def _steps(accepted: float, rejected: float, *others: float) -> StepsTaken:
+    """From a row of numbers, of which the first ones are whole."""
+    return StepsTaken(int(accepted), int(rejected), *others)
 
 
 def _name(number: int) -> str:

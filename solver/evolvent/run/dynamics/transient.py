@@ -20,6 +20,7 @@ from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_transient import PairTransient
 from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
+from evolvent.dynamics.transient.step_lengths.divided_steps import UNDIVIDED, DividedSteps
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.fem.parallel.ranks import on_first, together
@@ -42,7 +43,7 @@ from evolvent.run.progress import CONDENSING, MESHING, OUTPUT, POSITIONS, Progre
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.skips import wanted_output
 
 MODES, STEPS = "natural modes", "mesh periods"
@@ -128,7 +129,7 @@ def _cases(
         for number in own:
             speed, index = tasks[number]
             omega, scheme = 2.0 * np.pi * speed / 60.0, TimeScheme(section.spectral_radius)
-            transient = PairTransient(loaded[index], frictions[index], omega, scheme, contacts)
+            transient = PairTransient(loaded[index], frictions[index], omega, scheme, contacts, _division(section))
             start = starts[index].at(transient.time_step)
             found[number] = until_steady(transient, start, section.mesh_periods, section.steady_change)
             _check(found[number], transient, settings.backlash)
@@ -151,9 +152,16 @@ def _contacts(scene: Scene, pair: MovingPair, ranks: int) -> KeptContacts:
     return KeptContacts(pair, scene.sweep.positions, components, KEPT * 1e6 * machine_megabytes() / ranks)
 
 
+def _division(section: TransientSection) -> DividedSteps:
+    """How steps between two positions are divided."""
+    if section.tolerance is None:
+        return UNDIVIDED
+    return DividedSteps(section.tolerance, section.most_parts.bit_length() - 1)
+
+
 def _check(found: MeshPeriods, transient: PairTransient, backlash: float) -> None:
     """Raises BackFlanks, Unbalanced."""
-    require_backlash(found.errors, backlash, transient.name)
+    require_backlash(found.lowest_error, backlash, transient.name)
     if found.is_steady:
         load, energies = transient.pair.drive.torque / transient.pair.lever, found.energies
         certify_motion(found.mean_force / load, energies.left / energies.passed, transient.name)
@@ -183,4 +191,5 @@ def _written(scene: Scene, pair: MovingPair, cases: Sequence[TransientCase], out
     output = wanted_output(scene)
     pictures = [Picture(PICTURE, drawn)] if output.pictures else []
     pictures += [Picture(ANIMATION, animated)] if output.animation else []
-    return [*draw(pictures, folder).failures, *sentences(facts, scene.sweep.positions)]
+    said = sentences(facts, scene.sweep.positions, transient_section(scene).tolerance)
+    return [*draw(pictures, folder).failures, *said]

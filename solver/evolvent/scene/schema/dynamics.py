@@ -22,6 +22,9 @@ MAP_RANGE = 1.0, 400.0
 MAP_PERCENTS = f"{MAP[0]} to {MAP[1]} different numbers from {MAP_RANGE[0]:g} to {MAP_RANGE[1]:g}"
 
 TRANSIENT_SPEEDS = f"a list of 1 to 12 different speeds above 0 up to {FASTEST:g}, in r/min"
+MANY_PARTS, MOST_PARTS = 64, 1024
+"""Of the way from one position to the next: by default at most, and the most that may be asked for."""
+PARTS = f"a power of two from 2 to {MOST_PARTS}"
 Speed = Annotated[float, Field(gt=0, le=FASTEST)]
 
 
@@ -222,10 +225,27 @@ class TransientSection(SceneSection):
         "what a time step leaves of motions that are too fast for it", "a number from 0 to 1",
         "0.8 is usual; 0 for speeds at which a step takes several natural periods", default=0.8, ge=0, le=1,
     )  # fmt: skip
+    tolerance: float | None = key(
+        "estimated error of the speeds in a time step, in the norm of the kinetic energy, over the speed that the "
+        "largest energy so far would give: a step from one of the sweep's positions to the next that has more, or "
+        "cannot be solved, is taken in halves, quarters and so on; by default nothing is divided",
+        "a number from 1e-6 to 1", "0.01 is coarse, 0.001 fine; delete the key for equal steps", default=None, ge=1e-6,
+        le=1,
+    )  # fmt: skip
+    most_parts: int = key(
+        "with a tolerance, equal parts into which the way from one position to the next is divided at most; a sentence "
+        "says where they do not reach it",
+        PARTS, f"{MANY_PARTS} is the default", default=MANY_PARTS, ge=2, le=MOST_PARTS,
+    )  # fmt: skip
 
-    @field_validator("speeds_rpm")
-    @classmethod
-    def _different(cls, speeds: tuple[float, ...]) -> tuple[float, ...]:
-        if len(set(speeds)) < len(speeds):
-            raise validation_error(InputProblem("speeds_rpm", shown(speeds), TRANSIENT_SPEEDS, "give each once"))
-        return speeds
+    @model_validator(mode="after")
+    def _fitting(self) -> Self:
+        if len(set(self.speeds_rpm)) < len(self.speeds_rpm):
+            raise validation_error(
+                InputProblem("speeds_rpm", shown(self.speeds_rpm), TRANSIENT_SPEEDS, "give each once")
+            )
+        if self.most_parts & (self.most_parts - 1):
+            raise validation_error(
+                InputProblem("most_parts", shown(self.most_parts), PARTS, f"{MANY_PARTS} is the default")
+            )
+        return self

@@ -14,10 +14,12 @@ from evolvent.dynamics.results.transient import CasePressures, TransientCase
 from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.dynamics.transient.step_balance import Residuals, StepEnergies
+from evolvent.dynamics.transient.step_lengths.divided_steps import StepsTaken
 from evolvent.gears.pressure.line_peaks import has_peak, pooled_peaks
 from evolvent.gears.pressure.pitch_pressure import PitchPressure
 from tests.support.synthetic_run import synthetic_run
 
+ONE = StepsTaken(1, 0, 1.0, 0.0, 1.0, 1.0, 0.0)
 FILES = ["demos/yang2022.toml", "demos/he2022.toml"]
 
 
@@ -27,10 +29,10 @@ def field(file: str) -> FieldOfAction:
     results = [position[0].result for position in run.positions]
     forces, nothing = np.linspace(2.0, 3.0, len(results)), (0.0,) * 5
     moments = tuple(
-        PairMoment(0.0, result, float(force), 0.0, Residuals(*nothing), StepEnergies(*nothing, 0.0, 0.0))
+        PairMoment(0.0, result, float(force), 0.0, Residuals(*nothing), StepEnergies(*nothing, 0.0, 0.0), ONE)
         for result, force in zip(results, forces)
     )
-    periods = MeshPeriods(moments, np.zeros(len(moments)), np.zeros(1), 0.005, Residuals(*nothing))
+    periods = MeshPeriods(moments, np.zeros(len(moments)), np.zeros(1), 0.005, Residuals(*nothing), 0.0)
     still = PitchPressure(run.pair, tuple(position[0].cut for position in run.positions), run.inner_path)
     case = TransientCase(1500.0, run.frictions[0], periods, tuple(results), 2.0)
     return FieldOfAction(run.scene.title, run.pair, CasePressures(case, still, still))

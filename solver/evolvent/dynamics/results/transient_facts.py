@@ -78,8 +78,8 @@ class TransientFacts:
     motion_energy_error: float
     """Largest error of the energy balance of vibration and modes in a time step, over this energy and the work."""
     step_energy_error: float
-    """Largest energy between rotation, contact and motion that a time step leaves without account, over what the load
-    passes on in it."""
+    """Largest energy between rotation, contact and motion that is left without account from one position to the next,
+    over what the load passes on there."""
     period_energy_error: float
     """The same over the last mesh period."""
     friction_loss: float

@@ -13,9 +13,9 @@ EXACT = 1e-8
 MOMENT = 1e-2
 """Of moments about one axis, which the gap between the flanks sets apart."""
 EXCHANGED = 0.05
-"""Energy that a step may leave without account, over what the load passes on in it; beyond it the step is too long for
-what happens in it, or strains are not small. Found: up to 0.003, with ten positions a mesh period, separation included.
-"""
+"""Energy that the way from one position to the next may leave without account, over what the load passes on there;
+beyond it the steps are too long for what happens in them, or strains are not small. Found: up to 0.003, with ten
+positions a mesh period, separation included."""
 PERIOD = 1e-2
 """The same of a mesh period of a steady motion, as of a pitch in statics."""
 MEAN_FORCE = 0.01

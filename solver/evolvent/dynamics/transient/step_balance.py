@@ -54,7 +54,8 @@ class Residuals:
     motion: float
     """Energy of modes and ψ, over this energy and the work on them."""
     exchange: float
-    """Energy between rotation, contact and motion, over what the load passes on in a step."""
+    """Energy between rotation, contact and motion, over what the load passes on: in a step, or on the whole way from
+    one position to the next."""
 
     def larger(self, other: Residuals) -> Residuals:
         """The larger ones of both, the known one where only one is known."""

@@ -86,7 +86,8 @@ def test_balances_hold_at_every_step() -> None:
 
 def test_energies_of_the_way() -> None:
     """Passed on is the load's torque times the rotation, however many steps it takes; over a steady period, in steps of
-    different lengths with friction, the contact gives what damping and time scheme take out, within 0.1 %."""
+    different lengths with friction, the contact gives what damping and time scheme take out, and the mean mesh force
+    is the load's, within 0.1 %."""
     fast = lightly_damped()
     passed = fast.pair.drive.torque / fast.pair.lever * fast.pair.base_radii[0] * fast.contacts.step_angle
     assert [moment.energies.passed for moment in divided()] == pytest.approx([passed] * len(divided()), rel=1e-12)
@@ -97,6 +98,11 @@ def test_energies_of_the_way() -> None:
     assert found.energies.given == pytest.approx(found.energies.damping + found.energies.numerical, rel=1e-3)
     assert found.energies.numerical > 0.0
     assert found.steps.accepted > 2 * POSITIONS
+    load = smooth.pair.drive.torque / smooth.pair.lever
+    assert found.mean_force == pytest.approx(load, rel=1e-3)  # of all steps; that of ten positions is not
+    assert float(np.mean([moment.mesh_force for moment in found.moments])) != pytest.approx(load, rel=1e-3)
+    assert found.lowest_error <= found.errors.min()
+    assert found.steps.largest_force >= max(moment.mesh_force for moment in found.moments)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])

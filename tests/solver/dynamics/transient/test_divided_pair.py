@@ -125,7 +125,7 @@ def test_what_lies_between_is_kept() -> None:
     fast = replace(moving("spur", 0.2, 2000.0, free=True), division=DividedSteps(4e-3, 6))
     wanted = moments(fast, 2)
     searched = dict(fast.contacts.kept)
-    assert any(phase % 1.0 for phase, _ in searched)
+    assert any(phase % 1.0 for phase, *_ in searched)
     assert [moment.mesh_force for moment in moments(fast, 2)] == [moment.mesh_force for moment in wanted]
     assert fast.contacts.kept.keys() == searched.keys()
     bare = replace(fast, contacts=KeptContacts(fast.pair, POSITIONS, fast.contacts.components, 0.0))

@@ -7,7 +7,8 @@ is s times as long as the one before begins with
     a'_n = a_n + (s − 1) α (a_n − a_{n−1}) ,    a'_{n−1} = a'_n − s (a_n − a_{n−1}) ,
 
 as if all steps before had been as long. Position, velocity and the equation of motion stay as they are:
-(1 − α) a'_n + α a'_{n−1} = (1 − α) a_n + α a_{n−1}. The energy of the scheme (contact/transient/scheme_energy.py) needs
+(1 − α) a'_n + α a'_{n−1} = (1 − α) a_n + α a_{n−1}. The energy of the scheme
+(contact/transient/time_schemes/scheme_energy.py) needs
 no more of the past than that equation. So its balance is exact of the next step, too, with the energy that the same
 state has in steps of the new length.
 

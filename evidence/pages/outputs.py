@@ -21,8 +21,8 @@ from evolvent.dynamics.results.response import BranchRow, DriveSummary, Response
 from evolvent.dynamics.results.spectrum import SpectrumRow
 from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
 from evolvent.dynamics.results.torque_map import MapRow
-from evolvent.dynamics.results.transient import TransientRow, TransientToothRow
-from evolvent.dynamics.results.transient_facts import TransientFacts
+from evolvent.dynamics.results.transient.facts import TransientFacts
+from evolvent.dynamics.results.transient.rows import TransientRow, TransientToothRow
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.drawing.labels import UNITS, ending

@@ -218,11 +218,15 @@ def transient(
     with reported(parallel=True, advice=RESUME.format("transient")):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         require(not (resume and overwrite), BOTH)
-        from evolvent.run.dynamics.transient import run_transient
+        from evolvent.run.dynamics.transient.transient_run import run_transient
 
         require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
         warn(run_transient(unworn(loaded), out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
+            from evolvent.run.dynamics.transient.summary_lines import summary_lines
+
+            for line in summary_lines(out):
+                typer.echo(line)
             done(out, "transient.csv", "transient_teeth.csv", "transient.json", "pictures/transient.png",
                  "pictures/field_of_action.gif")  # fmt: skip
 

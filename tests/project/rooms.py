@@ -118,12 +118,16 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.*", "dynamics", "wear", "wear.gears",
     ),
     "dynamics.results": (
-        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient", "dynamics.excitation",
-        "dynamics.oscillator", "results.archive", "results.error_bars", "results.tables",
+        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive", "results.error_bars",
+        "results.tables",
+    ),
+    "dynamics.results.transient": (
+        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics.transient", "results.archive",
+        "results.error_bars", "results.tables", "dynamics.results",
     ),
     "dynamics.figures": (
         "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.excitation", "dynamics.oscillator",
-        "dynamics.results", "results.drawing",
+        "dynamics.results.*", "results.drawing",
     ),
     "strength.results": (
         "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "strength.standard",
@@ -141,10 +145,14 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
+        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
+        "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
+    ),
+    "run.dynamics.transient": (
         "meshes", "meshes.gears", "contact.transient.time_schemes", "fem.backend", "fem.parallel", "gears.problem",
         "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive",
-        "results.drawing",
-        "dynamics.*", "run",
+        "results.drawing", "dynamics", "dynamics.transient", "dynamics.transient.step_lengths",
+        "dynamics.results.transient", "dynamics.figures", "run",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

@@ -22,6 +22,7 @@ from evidence.tables import markdown
 KEPT = "yang2022/transient.csv"
 COMMAND = "python -m evidence.pages.papers.yang_transient --out DIR"
 SPEEDS, LOW, HIGH = (1500, 3000), 0.07, 0.3
+PLAIN = "output.animation=false", "output.error_bars=false"
 FRICTIONS = 0.07, 0.08, 0.11, 0.12, 0.15, 0.2, 0.3
 WAYS = {
     "pinion": ("transient.drive=free", "transient.modes_per_harmonic=0", f"contact.friction={list(FRICTIONS)}"),
@@ -33,7 +34,7 @@ def figures(runs: Runs) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
     for on, settings in WAYS.items():
         speeds = f"transient.speeds_rpm={list(SPEEDS)}"
-        set_to = [f"--set={each}" for each in (*settings, speeds, "output.animation=false")]
+        set_to = [f"--set={each}" for each in (*settings, speeds, *PLAIN)]
         words = module_run("evolvent", "transient", DEMOS / "yang2022.toml", "--level", "quick", "--overwrite",
                            "--quiet", *set_to)  # fmt: skip
         folder, cost = runs.ended(on, "transient.json", *words)

@@ -169,18 +169,12 @@ def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, floa
 
 def with_hertz(run: RunData) -> RunData:
     """The run with Hertz' peak pressure for each slice's line load in place of the fitted peak."""
-    return _with_cuts(run, lambda cut: replace(cut, peak=np.where(cut.edge, np.nan, cut.hertz)))
+    return _with_cuts(run, Slices.of_hertz)
 
 
 def with_line_loads(run: RunData) -> RunData:
-    """The run with peak pressures that depend on the line loads alone, in slices on tip edges too: Hertz' with the
-    curvatures on the nominal contact line."""
-
-    def replaced(cut: Slices) -> Slices:
-        nominal = cut.on_nominal_lines(run.pair)
-        return replace(nominal, peak=nominal.hertz)
-
-    return _with_cuts(run, replaced)
+    """The run with peak pressures that depend on the line loads alone, see `Slices.of_line_loads`."""
+    return _with_cuts(run, lambda cut: cut.of_line_loads(run.pair))
 
 
 def _with_cuts(run: RunData, changed: Callable[[Slices], Slices]) -> RunData:

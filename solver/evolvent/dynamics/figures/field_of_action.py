@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.results.transient import CasePressures
+from evolvent.dynamics.results.transient.cases import CasePressures
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import pooled_peaks
 from evolvent.results.drawing.animations import frame, gif

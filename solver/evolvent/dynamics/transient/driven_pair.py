@@ -24,16 +24,17 @@ pair has half as much transmission error again near a superharmonic (docs/he2022
 
 
 def resolved_modes(
-    problem: GearProblem, model: GearModel, density: float, sampled: float, per_harmonic: int | None
-) -> tuple[GearModes, GearModes]:
-    """Of pinion and wheel: those that have four time steps a period, and at least `LEAST` of each harmonic.
+    problem: GearProblem, model: GearModel, density: float, sampled: float, per_harmonic: int | None,
+    least: int = LEAST,
+) -> tuple[GearModes, GearModes]:  # fmt: skip
+    """Of pinion and wheel: those that have four time steps a period, and at least so many of each harmonic.
 
     density: [kg/m³]. sampled: time steps a second, at the highest speed. per_harmonic: so many of each harmonic of the
-    ring of teeth instead, None for the default.
+    ring of teeth instead, None for the default. least: by default `LEAST`.
 
     Raises MeshError, NotPositiveDefinite, OutOfMemory.
     """
-    choice = ModeChoice(2.0 * np.pi * RESOLVED * sampled, per_harmonic, LEAST)
+    choice = ModeChoice(2.0 * np.pi * RESOLVED * sampled, per_harmonic, least)
     heavy = [
         replace(body, material=replace(body.material, density=TONNE_PER_MM3 * density)) for body in model.bodies
     ]

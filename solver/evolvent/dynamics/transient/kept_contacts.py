@@ -8,7 +8,7 @@ The gap of a position is linear in ψ near where it was searched. Searches are m
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -45,7 +45,15 @@ class KeptContacts:
     """Memory that may be kept [bytes]; what has no room is searched again each time. The first ones are kept: as each
     period needs all of them in turn, dropping the oldest would keep none that is needed next."""
     kept: dict[tuple[float, int, float], SearchedContact] = field(default_factory=dict, repr=False)
-    """By position, multiple and half-width of the window."""
+    """By position, among the closest ones that share it, multiple and half-width of the window."""
+    apart: int = 1
+    """From one position to the next, among these."""
+
+    def thinned(self, apart: int) -> KeptContacts:
+        """Each so-many-th position, from the first one on. What was searched for all positions is not searched again.
+        apart: a power of two, so that angles are the same to the last digit, and a divisor of the number of positions.
+        """
+        return replace(self, positions=self.positions // apart, apart=apart * self.apart)
 
     @property
     def step_angle(self) -> float:
@@ -79,7 +87,7 @@ class KeptContacts:
         )
 
     def _at(self, phase: float, multiple: int, half_width: float) -> SearchedContact:
-        key = phase, multiple, half_width
+        key = self.apart * phase, multiple, half_width
         if key in self.kept:
             return self.kept[key]
         searched = self._searched(phase * self.step_angle, multiple * self._spacing, half_width)

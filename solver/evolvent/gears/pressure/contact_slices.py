@@ -59,6 +59,16 @@ class Slices:
         radius = nominal_radius(pair, self.roll_distance)
         return replace(self, hertz=self.hertz * np.sqrt(self.radius / radius), radius=radius)
 
+    def of_hertz(self) -> Slices:
+        """With Hertz' peak pressures for the line loads in place of the fitted ones."""
+        return replace(self, peak=np.where(self.edge, np.nan, self.hertz))
+
+    def of_line_loads(self, pair: GearPair) -> Slices:
+        """With peak pressures that depend on the line loads alone, on tip edges too: Hertz' with the curvatures on the
+        nominal contact line."""
+        nominal = self.on_nominal_lines(pair)
+        return replace(nominal, peak=nominal.hertz)
+
 
 @dataclass(frozen=True)
 class ToothSummary:

@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection
 from PIL import Image
 
 from evolvent.dynamics.figures.field_of_action import FieldOfAction
-from evolvent.dynamics.results.transient import CasePressures, TransientCase
+from evolvent.dynamics.results.transient.cases import CasePressures, TransientCase
 from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.dynamics.transient.step_balance import Residuals, StepEnergies

@@ -9,7 +9,10 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from evolvent.dynamics.results.transient import UM, CasePressures
+from evolvent.dynamics.results.transient.cases import UM, CasePressures
+from evolvent.dynamics.results.transient.compared import FINER
+from evolvent.dynamics.results.transient.curves import largest
+from evolvent.dynamics.results.transient.errors import CaseErrors
 from evolvent.gears.gear_model import GearModel
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import without_nan
@@ -28,6 +31,8 @@ class TransientFacts:
     """Of the pinion."""
     friction: float
     """μ."""
+    mesh_frequency_Hz: float
+    """Speed times number of teeth."""
     mesh_periods: int
     """That were computed."""
     last_change: float | None
@@ -40,6 +45,9 @@ class TransientFacts:
     """The lowest of them; null without modes."""
     natural_frequency_Hz: float
     """Of the rotation of the gears on their mesh, by its mean tangent stiffness in statics."""
+    natural_frequency_Hz_error: float
+    """Its estimated error by the mesh and the spacing of positions; null where there is no coarse companion
+    (`output.error_bars`)."""
     steps_per_natural_period: float
     """Time steps in a period of it, in the mean; of fewer than eight, all equal, what the mesh excites of it is not
     resolved."""
@@ -58,16 +66,28 @@ class TransientFacts:
     either."""
     peak_to_peak_um: float
     """Of the transmission error."""
+    peak_to_peak_um_error: float
+    """Its estimated error by mesh, modes and time steps; null where there is no coarse companion (`output.error_bars`).
+    """
     static_peak_to_peak_um: float
     """The same without inertia."""
+    static_peak_to_peak_um_error: float
+    """Its estimated error by the mesh and the spacing of positions; null likewise."""
     dynamic_factor: float
-    """Largest mesh force over the load, at the ends of all time steps of the last mesh period."""
+    """Largest mesh force over the load, at the ends of all time steps of the last mesh period; not K_v of ISO 6336-1.
+    """
+    dynamic_factor_error: float
+    """Its estimated error by mesh, modes and time steps; null likewise."""
     separated: float
     """Share of the positions at which nothing touches."""
     max_pressure_MPa: float
     """Largest of transient.csv; null where none is known."""
+    max_pressure_MPa_error: float
+    """Its estimated error by mesh, modes and time steps; null likewise."""
     static_max_pressure_MPa: float
     """The same without inertia."""
+    static_max_pressure_MPa_error: float
+    """Its estimated error by the mesh and the spacing of positions; null likewise."""
     momentum_error: float
     """Largest residual of the equations of motion at any time step, over the forces in them."""
     reaction_error: float
@@ -91,29 +111,33 @@ class TransientFacts:
 
 
 def transient_facts(
-    model: GearModel, pressures: Sequence[CasePressures], frequencies: Floats, mass: float
+    model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors], frequencies: Floats, mass: float
 ) -> list[TransientFacts]:
-    """Of all cases. frequencies: of the modes [rad/s]; mass: along the line of action [t; t/mm in 2D]."""
+    """Of all cases with their error bars. frequencies: of the modes [rad/s]; mass: along the line of action
+    [t; t/mm in 2D]."""
     width, facts = model.width_factor, []
     lowest = float(frequencies.min() / (2.0 * np.pi)) if len(frequencies) else None
-    for each in pressures:
+    for each, bars in zip(pressures, errors):
         case, found, (moving, still) = each.case, each.case.found, each.peaks()
         load = case.load
-        errors = np.array([result.transmission_error for result in case.results])
+        motion = np.array([result.transmission_error for result in case.results])
         stiffness = float(np.mean([still.stiffness for still in case.static]))
         natural = float(np.sqrt(stiffness / mass)) / (2.0 * np.pi)
         worst, energies, passed = found.residuals, found.energies, found.energies.passed
         steps = found.steps
         step = (found.moments[-1].time - found.moments[-2].time) / (steps.accepted / len(found.moments))
         facts.append(TransientFacts(
-            case.speed, case.friction, found.periods, float(found.changes[-1]) if len(found.changes) else None,
-            found.is_steady, len(frequencies), lowest, natural, 1.0 / (natural * step),
-            steps.accepted, steps.shortest, steps.rejected, steps.error, width * found.mean_force, width * load,
-            UM * float(np.ptp(errors)), UM * float(np.ptp([still.transmission_error for still in case.static])),
-            steps.largest_force / load, float(np.mean([len(result.contact.tooth) == 0 for result in case.results])),
-            _largest(moving), _largest(still), worst.momentum, worst.reaction, worst.moment, worst.motion,
-            worst.exchange, abs(energies.left) / passed, energies.friction / passed, energies.damping / passed,
-            energies.numerical / passed,
+            case.speed, case.friction, case.speed / 60.0 * model.pair.pinion.z, found.periods,
+            float(found.changes[-1]) if len(found.changes) else None, found.is_steady, len(frequencies), lowest,
+            natural, bars.natural_frequency * natural, 1.0 / (natural * step), steps.accepted, steps.shortest,
+            steps.rejected, steps.error, width * found.mean_force, width * load,
+            UM * float(np.ptp(motion)), bars.peak_to_peak_um,
+            UM * float(np.ptp([still.transmission_error for still in case.static])), bars.static_peak_to_peak_um,
+            steps.largest_force / load, bars.dynamic_factor,
+            float(np.mean([len(result.contact.tooth) == 0 for result in case.results])), largest(moving),
+            bars.max_pressure, largest(still), bars.static_max_pressure, worst.momentum, worst.reaction, worst.moment,
+            worst.motion, worst.exchange, abs(energies.left) / passed, energies.friction / passed,
+            energies.damping / passed, energies.numerical / passed,
         ))  # fmt: skip
     return facts
 
@@ -140,7 +164,7 @@ def sentences(facts: Sequence[TransientFacts], positions: int, tolerance: float 
         f"{speed:g} r/min: the pair's own vibration of {fact.natural_frequency_Hz:.0f} Hz has "
         f"{fact.steps_per_natural_period:.2g} time steps a period; wanted {ENOUGH_STEPS:g}: what the mesh excites of "
         f"it is not resolved; sweep.positions = {math.ceil(positions * ENOUGH_STEPS / fact.steps_per_natural_period)} "
-        "resolves it, transient.spectral_radius = 0 leaves statics where that is too many"
+        f"resolves it, transient.spectral_radius = 0 leaves statics where that is too many{_doubt(fact)}"
         for speed, fact in coarse.items()
     ]
 
@@ -155,7 +179,8 @@ def _beyond(fact: TransientFacts, tolerance: float) -> str:
     )
 
 
-def _largest(pressures: Floats) -> float:
-    """NaN where none is known."""
-    known = pressures[np.isfinite(pressures)]
-    return float(known.max()) if len(known) else float("nan")
+def _doubt(fact: TransientFacts) -> str:
+    """Of error bars from time steps that do not resolve the vibration either."""
+    if math.isnan(fact.dynamic_factor_error) or FINER * fact.steps_per_natural_period >= ENOUGH_STEPS:
+        return ""
+    return "; error bars may not hold, as the shorter steps from which they come do not resolve it either"

@@ -10,9 +10,9 @@ import pytest
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.results.archive.archive import ArchiveError, arrays_bytes, read_arrays
 from evolvent.results.archive.run_folder import FolderError
-from evolvent.run.dynamics import transient
-from evolvent.run.dynamics.kept_cases import KeptCases
-from evolvent.run.dynamics.transient import run_transient
+from evolvent.run.dynamics.transient import cases as module
+from evolvent.run.dynamics.transient.kept_cases import KeptCases
+from evolvent.run.dynamics.transient.transient_run import run_transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
@@ -27,13 +27,13 @@ STOPPED = """
 import sys
 from mpi4py import MPI
 from evolvent.cli import main
-from evolvent.run.dynamics import transient
+from evolvent.run.dynamics.transient import cases
 
 def stopped(*given):
     raise RuntimeError("stopped")
 
 if MPI.COMM_WORLD.rank == MPI.COMM_WORLD.size - 1:
-    transient.until_steady = stopped
+    cases.until_steady = stopped
 sys.exit(main(sys.argv[1:]))
 """
 """A run whose last rank ends in its first case."""
@@ -68,18 +68,18 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Killed in the second of two cases and resumed: statics and the first case are not computed again, and the tables
-    are those of a call that was not stopped, byte for byte; also when resumed once more, where nothing is missing.
-    Another scene is refused."""
+    are those of a call that was not stopped, byte for byte; also where the companion is killed in its third motion of
+    four, and when resumed once more, where nothing is missing. Another scene is refused."""
     counts: list[int] = []
-    solved = transient.until_steady
+    solved = module.until_steady
 
     def counted(*given: Any) -> MeshPeriods:
         counts.append(1)
-        if len(counts) == 2:
+        if len(counts) in (2, 6):
             raise Killed
         return solved(*given)
 
-    monkeypatch.setattr(transient, "until_steady", counted)
+    monkeypatch.setattr(module, "until_steady", counted)
     with pytest.raises(Killed):
         run_transient(scene(), tmp_path, quiet=True)
     assert kept(tmp_path) == ["transient_0000.npz", "transient_static.npz"]
@@ -87,11 +87,17 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
         run_transient(scene(), tmp_path, quiet=True)
     with pytest.raises(ArchiveError, match="found that of another one"):
         run_transient(scene("transient.mesh_periods=50"), tmp_path, resume=True, quiet=True)
-    monkeypatch.setattr(transient, "sweep_until_periodic", None)
+    with pytest.raises(Killed):
+        run_transient(scene(), tmp_path, resume=True, quiet=True)
+    assert kept(tmp_path) == [
+        "transient_0000.npz", "transient_0001.npz", "transient_coarse_static.npz", "transient_finer_0000.npz",
+        "transient_finer_0001.npz", "transient_static.npz",
+    ]  # fmt: skip
+    monkeypatch.setattr(module, "sweep_until_periodic", None)
     said = run_transient(scene(), tmp_path, resume=True, quiet=True)
-    assert len(counts) == 2 + 1
+    assert len(counts) == 2 + 4 + 2
     assert tables(tmp_path) == tables(out)
-    monkeypatch.setattr(transient, "until_steady", None)
+    monkeypatch.setattr(module, "until_steady", None)
     assert run_transient(scene(), tmp_path, resume=True, quiet=True) == said
     assert tables(tmp_path) == tables(out)
 
@@ -101,10 +107,29 @@ def test_overwriting_begins_anew(out: Path, tmp_path: Path, monkeypatch: pytest.
     earlier = KeptCases.of(scene(), scene().gear_pair(), tmp_path)
     earlier.write(1, KeptCases.of(scene(), earlier.pair, out).read(2)[1])
     assert kept(tmp_path) == ["transient_0001.npz"]
-    monkeypatch.setattr(transient, "sweep_until_periodic", stopped)
+    monkeypatch.setattr(module, "sweep_until_periodic", stopped)
     with pytest.raises(Killed):
         run_transient(scene(), tmp_path, overwrite=True, quiet=True)
     assert kept(tmp_path) == []
+
+
+def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a call without them nothing is computed again but the companion; the tables are those of a call with them,
+    byte for byte."""
+    run_transient(scene("output.error_bars=false"), tmp_path, quiet=True)
+    assert kept(tmp_path) == ["transient_0000.npz", "transient_0001.npz", "transient_static.npz"]
+    assert tables(tmp_path) != tables(out)
+    counts: list[int] = []
+    solved = module.until_steady
+
+    def counted(*given: Any) -> MeshPeriods:
+        counts.append(1)
+        return solved(*given)
+
+    monkeypatch.setattr(module, "until_steady", counted)
+    run_transient(scene(), tmp_path, resume=True, quiet=True)
+    assert len(counts) == 4
+    assert tables(tmp_path) == tables(out)
 
 
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:

@@ -7,17 +7,15 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.dynamics.results.transient.cases import UM, CasePressures
+from evolvent.dynamics.results.transient.errors import CaseErrors
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.pressure.line_peaks import line_peak
-from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
-from evolvent_meshes.arrays import Floats
 
 TRANSIENT, TRANSIENT_TEETH = "transient.csv", "transient_teeth.csv"
-UM = 1e3
 
 
 @dataclass(frozen=True)
@@ -30,14 +28,21 @@ class TransientRow:
     """μ."""
     pinion_angle_deg: float
     """Nominal rotation of the pinion; 0: tooth pair 0 touches at the pitch point, in the mid-face section."""
+    time_s: float
+    """Since the pinion stood at rotation 0, within this mesh period."""
     transmission_error_um: float
     """r_b1 φ_1 − r_b2 φ_2."""
+    transmission_error_um_error: float
+    """Its estimated error by mesh, modes and time steps; NaN where there is no coarse companion (`output.error_bars`).
+    """
     static_transmission_error_um: float
     """The same without inertia."""
     velocity_mm_per_s: float
     """Rate of the transmission error."""
     mesh_force_N: float
     """Along the line of action in the transverse section; the torque over the base radius in statics."""
+    mesh_force_N_error: float
+    """Its estimated error, likewise."""
     pinion_torque_Nm: float
     """Moment of the contact forces about the pinion's axis."""
     wheel_torque_Nm: float
@@ -45,6 +50,8 @@ class TransientRow:
     max_pressure_MPa: float
     """Largest fitted peak pressure between the tip-edge zones; NaN where all contact lies in these, or nothing
     touches."""
+    max_pressure_MPa_error: float
+    """Its estimated error, likewise."""
     static_max_pressure_MPa: float
     """The same without inertia."""
 
@@ -61,78 +68,44 @@ class TransientToothRow:
     """Rotation of the pinion since this tooth pair touched at the pitch point, in the mid-face section."""
     normal_force_N: float
     """Of this tooth pair."""
+    normal_force_N_error: float
+    """Its estimated error by mesh, modes and time steps; NaN where there is no coarse companion (`output.error_bars`).
+    """
     static_normal_force_N: float
     """The same without inertia."""
     max_pressure_MPa: float
     """Largest fitted peak pressure between the tip-edge zones."""
+    max_pressure_MPa_error: float
+    """Its estimated error, likewise."""
     static_max_pressure_MPa: float
     """The same without inertia."""
 
 
-@dataclass(frozen=True, eq=False)
-class TransientCase:
-    """A speed and friction coefficient, with the statics of the same positions."""
-
-    speed: float
-    """Of the pinion [r/min]."""
-    friction: float
-    """μ."""
-    found: MeshPeriods
-    """The transient."""
-    static: tuple[PositionResult, ...]
-    """Its positions without inertia."""
-    load: float
-    """Along the line of action [N; N/mm in 2D]."""
-
-    @property
-    def results(self) -> tuple[PositionResult, ...]:
-        """Positions of the last mesh period."""
-        return tuple(moment.result for moment in self.found.moments)
-
-
-@dataclass(frozen=True, eq=False)
-class CasePressures:
-    """Fitted pressures of a case; NaN where nothing is known."""
-
-    case: TransientCase
-    """The case."""
-    moving: PitchPressure
-    """Of its positions."""
-    still: PitchPressure
-    """Without inertia."""
-
-    def peaks(self) -> tuple[Floats, Floats]:
-        """Largest pressure at each position (n,), with inertia and without [MPa]."""
-        return self.moving.at_positions, self.still.at_positions
-
-
-def case_pressures(model: GearModel, cases: Sequence[TransientCase]) -> list[CasePressures]:
-    """Of all cases, between the same tip-edge zones."""
-    still = {case.friction: case.static for case in cases}  # the same at all speeds
-    columns = [*(case.results for case in cases), *still.values()]
-    found = pitch_pressures(model, [tuple(column[k] for column in columns) for k in range(len(columns[0]))])
-    static = dict(zip(still, found[len(cases) :]))
-    return [CasePressures(case, moving, static[case.friction]) for case, moving in zip(cases, found)]
-
-
-def transient_rows(model: GearModel, pressures: Sequence[CasePressures]) -> Iterator[TransientRow]:
-    """Of all cases, at ascending rotations."""
+def transient_rows(
+    model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors]
+) -> Iterator[TransientRow]:
+    """Of all cases with their error bars, at ascending rotations."""
     width = model.width_factor
-    for each in pressures:
+    for each, bars in zip(pressures, errors):
         case = each.case
-        for moment, still, peak, calm in zip(case.found.moments, case.static, *each.peaks()):
-            result = moment.result
+        columns = (*each.peaks(), bars.transmission_error_um, bars.mesh_force, bars.pressure)
+        for moment, still, peak, calm, of_error, of_force, of_peak in zip(case.found.moments, case.static, *columns):
+            result, angle = moment.result, moment.result.stand.angle
             yield TransientRow(
-                case.speed, case.friction, float(np.degrees(result.stand.angle)), UM * result.transmission_error,
-                UM * still.transmission_error, moment.rate, width * moment.mesh_force,
-                1e-3 * width * result.torques[0], 1e-3 * width * result.torques[1], float(peak), float(calm),
+                case.speed, case.friction, float(np.degrees(angle)), 30.0 / np.pi * angle / case.speed,
+                UM * result.transmission_error, float(of_error), UM * still.transmission_error, moment.rate,
+                width * moment.mesh_force, width * float(of_force), 1e-3 * width * result.torques[0],
+                1e-3 * width * result.torques[1], float(peak), float(of_peak), float(calm),
             )  # fmt: skip
 
 
-def tooth_rows(model: GearModel, pressures: Sequence[CasePressures]) -> Iterator[TransientToothRow]:
-    """Of all cases, at ascending rotations of a tooth: all pairs of a pitch make one engagement."""
+def tooth_rows(
+    model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors]
+) -> Iterator[TransientToothRow]:
+    """Of all cases with their error bars, at ascending rotations of a tooth: all pairs of a pitch make one engagement.
+    """
     pitch, width = 2.0 * np.pi / model.pair.pinion.z, model.width_factor
-    for each in pressures:
+    for each, bars in zip(pressures, errors):
         case, rows = each.case, []
         for k, (moving, still) in enumerate(zip(case.results, case.static)):
             teeth = np.union1d(moving.contact.tooth, still.contact.tooth)
@@ -142,8 +115,12 @@ def tooth_rows(model: GearModel, pressures: Sequence[CasePressures]) -> Iterator
                     line_peak(model.pair, own.cuts[k], tooth, own.inner_path).pressure
                     for own in (each.moving, each.still)
                 ]
-                angle = float(np.degrees(moving.stand.angle + tooth * pitch))
-                rows.append(TransientToothRow(case.speed, case.friction, angle, *forces, *peaks))
+                angle = moving.stand.angle + tooth * pitch
+                of_force, of_peak = bars.of_tooth(angle)
+                rows.append(TransientToothRow(
+                    case.speed, case.friction, float(np.degrees(angle)), forces[0], width * of_force, forces[1],
+                    peaks[0], of_peak, peaks[1],
+                ))  # fmt: skip
         yield from sorted(rows, key=lambda row: row.tooth_angle_deg)
 
 

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from evolvent.run.dynamics import transient
-from evolvent.run.dynamics.kept_cases import KeptCases
-from evolvent.run.dynamics.transient import run_transient
+from evolvent.run.dynamics.transient.kept_cases import KeptCases
+from evolvent.run.dynamics.transient.transient_run import run_transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks

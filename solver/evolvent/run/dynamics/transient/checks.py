@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evolvent.dynamics.results.transient import TRANSIENT, TRANSIENT_TEETH
-from evolvent.dynamics.results.transient_facts import TRANSIENT_FACTS
+from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
+from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.run.dynamics.kept_cases import KEPT_CASES, KEPT_STATIC
+from evolvent.run.dynamics.transient.kept_cases import KEPT_CASES, KEPT_STATIC
 from evolvent.run.folder_checks import require_unfinished
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import TransientSection

@@ -2,6 +2,7 @@
 
     OUT/results/transient_static.npz   the positions without inertia, at each friction coefficient
     OUT/results/transient_0003.npz     a speed and friction coefficient whose motion has ended
+    OUT/results/transient_coarse_*.npz, transient_finer_*.npz     the same of the companion that gives the error bars
 
 A case is written when it ends, by the rank that computed it. Ranks write files of their own; the list of files in the
 folder takes each one's line whole.
@@ -28,6 +29,8 @@ from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.pair import GearPair
 
 KEPT_STATIC, KEPT_CASES = "results/transient_static.npz", "results/transient_*.npz"
+COARSE, FINER_STEPS = "_coarse", "_finer"
+"""Kinds of cases: those of the companion, in the time steps of the scene and in shorter ones."""
 Statics = list[tuple[PositionResult, ...]]
 """Of each friction coefficient, its positions."""
 T = TypeVar("T")
@@ -43,15 +46,17 @@ class KeptCases:
     """Of the scene: all that its results depend on."""
     pair: GearPair
     """The gears."""
+    kind: str = ""
+    """Of the cases."""
 
     @staticmethod
-    def of(scene: Scene, pair: GearPair, out: Path) -> KeptCases:
-        """Below OUT."""
-        return KeptCases(RunFolder(out), fingerprint(scene), pair)
+    def of(scene: Scene, pair: GearPair, out: Path, kind: str = "") -> KeptCases:
+        """Below OUT. kind: empty for those that are reported, else `COARSE` or `FINER_STEPS`."""
+        return KeptCases(RunFolder(out), fingerprint(scene), pair, kind)
 
     def read_static(self) -> Statics | None:
         """None where there are none. Raises ArchiveError."""
-        path = self.folder.out / KEPT_STATIC
+        path = self.folder.out / self._name("static")
         return self._read(path, self._static) if path.exists() else None
 
     def write_static(self, static: Statics) -> None:
@@ -59,11 +64,11 @@ class KeptCases:
         arrays: dict[str, Any] = {"count": len(static), "positions": len(static[0])}
         for i, results in enumerate(static):
             arrays |= _positions_arrays(results, f"{i}/")
-        self._write(KEPT_STATIC, arrays)
+        self._write(self._name("static"), arrays)
 
     def read(self, count: int) -> dict[int, MeshPeriods]:
         """Number of a case that has ended, of `count` -> its motion. Raises ArchiveError."""
-        paths = {number: self.folder.out / _name(number) for number in range(count)}
+        paths = {number: self.folder.out / self._name(f"{number:04d}") for number in range(count)}
         return {number: self._read(path, self._periods) for number, path in paths.items() if path.exists()}
 
     def write(self, number: int, found: MeshPeriods) -> None:
@@ -77,7 +82,10 @@ class KeptCases:
             "energies": [astuple(moment.energies) for moment in moments],
             "steps": [astuple(moment.steps) for moment in moments],
         }  # fmt: skip
-        self._write(_name(number), arrays)
+        self._write(self._name(f"{number:04d}"), arrays)
+
+    def _name(self, what: str) -> str:
+        return f"results/transient{self.kind}_{what}.npz"
 
     def _static(self, arrays: dict[str, Any]) -> Statics:
         return [tuple(self._positions(arrays, f"{i}/")) for i in range(int(arrays["count"]))]
@@ -118,10 +126,6 @@ class KeptCases:
 def _steps(accepted: float, rejected: float, *others: float) -> StepsTaken:
     """From a row of numbers, of which the first ones are whole."""
     return StepsTaken(int(accepted), int(rejected), *others)
-
-
-def _name(number: int) -> str:
-    return f"results/transient_{number:04d}.npz"
 
 
 def _positions_arrays(results: Sequence[PositionResult], start: str) -> dict[str, Any]:

@@ -1,0 +1,1 @@
+"""Tables of a pair's transient contact, with error bars."""

@@ -1,0 +1,65 @@
+"""Transient contact of a pair beside its statics, at one speed and friction coefficient."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent_meshes.arrays import Floats
+
+UM = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class TransientCase:
+    """A speed and friction coefficient, with the statics of the same positions."""
+
+    speed: float
+    """Of the pinion [r/min]."""
+    friction: float
+    """μ."""
+    found: MeshPeriods
+    """The transient."""
+    static: tuple[PositionResult, ...]
+    """Its positions without inertia."""
+    load: float
+    """Along the line of action [N; N/mm in 2D]."""
+
+    @property
+    def name(self) -> str:
+        """Speed and friction, for messages."""
+        return f"{self.speed:g} r/min, μ = {self.friction:g}"
+
+    @property
+    def results(self) -> tuple[PositionResult, ...]:
+        """Positions of the last mesh period."""
+        return tuple(moment.result for moment in self.found.moments)
+
+
+@dataclass(frozen=True, eq=False)
+class CasePressures:
+    """Fitted pressures of a case; NaN where nothing is known."""
+
+    case: TransientCase
+    """The case."""
+    moving: PitchPressure
+    """Of its positions."""
+    still: PitchPressure
+    """Without inertia."""
+
+    def peaks(self) -> tuple[Floats, Floats]:
+        """Largest pressure at each position (n,), with inertia and without [MPa]."""
+        return self.moving.at_positions, self.still.at_positions
+
+
+def case_pressures(model: GearModel, cases: Sequence[TransientCase]) -> list[CasePressures]:
+    """Of all cases, between the same tip-edge zones."""
+    still = {case.friction: case.static for case in cases}  # the same at all speeds
+    columns = [*(case.results for case in cases), *still.values()]
+    found = pitch_pressures(model, [tuple(column[k] for column in columns) for k in range(len(columns[0]))])
+    static = dict(zip(still, found[len(cases) :]))
+    return [CasePressures(case, moving, static[case.friction]) for case, moving in zip(cases, found)]

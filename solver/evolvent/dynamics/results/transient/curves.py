@@ -1,0 +1,113 @@
+"""Curves of a motion or of statics, on which error bars compare meshes and time steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.pressure.contact_slices import Slices, slices
+from evolvent.gears.pressure.line_peaks import line_peak
+from evolvent.gears.pressure.pitch_pressure import PitchPressure
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.results.error_bars.estimation import Curve
+from evolvent_meshes.arrays import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class PressureCurves:
+    """Largest pressures [MPa] of a mesh period; NaN where none is known."""
+
+    positions: Curve
+    """At its n positions."""
+    teeth: Curve
+    """Of a tooth pair over its engagement."""
+
+
+@dataclass(frozen=True, eq=False)
+class MotionCurves:
+    """A mesh period of one motion, or of statics."""
+
+    model: GearModel
+    """The pair on one kind of meshes."""
+    results: tuple[PositionResult, ...]
+    """(n,) positions, at ascending rotations from 0 on."""
+    cuts: tuple[Slices, ...]
+    """(n,) their contact in slices."""
+    inner: tuple[float, float]
+    """Roll distances [mm] between which pressures are looked at."""
+
+    @staticmethod
+    def of(model: GearModel, results: Sequence[PositionResult], inner: tuple[float, float]) -> MotionCurves:
+        """Cuts the contact of each position into slices."""
+        pinion, wheel = model.bodies
+        materials = pinion.material, wheel.material
+        cuts = tuple(slices(result, pinion.z, materials) for result in results)
+        return MotionCurves(model, tuple(results), cuts, inner)
+
+    @property
+    def angle(self) -> Floats:
+        """(n,) rotation of the pinion [rad]."""
+        return np.array([result.stand.angle for result in self.results])
+
+    @property
+    def transmission_error(self) -> Curve:
+        """[mm]."""
+        return Curve(self.angle, np.array([result.transmission_error for result in self.results]))
+
+    @property
+    def tooth_force(self) -> Curve:
+        """Of a tooth pair over its engagement [N; N/mm in 2D]."""
+
+        def force(k: int, tooth: int) -> float:
+            contact = self.results[k].contact
+            return float(np.sum((contact.weights * contact.pressure)[contact.tooth == tooth]))
+
+        return self._over_engagement(force)
+
+    @property
+    def fitted(self) -> PressureCurves:
+        """The pressures that tables have."""
+        return self._pressures(self.cuts)
+
+    @property
+    def hertz(self) -> PressureCurves:
+        """Those of Hertz for the line loads."""
+        return self._pressures([cut.of_hertz() for cut in self.cuts])
+
+    @property
+    def line_loads(self) -> PressureCurves:
+        """Those that depend on the line loads alone."""
+        return self._pressures([cut.of_line_loads(self.model.pair) for cut in self.cuts])
+
+    def _pressures(self, cuts: Sequence[Slices]) -> PressureCurves:
+        pair, inner = self.model.pair, self.inner
+        peaks = PitchPressure(pair, tuple(cuts), inner).at_positions
+        teeth = self._over_engagement(lambda k, tooth: line_peak(pair, cuts[k], tooth, inner).pressure)
+        return PressureCurves(Curve(self.angle, peaks), teeth)
+
+    def _over_engagement(self, value: Callable[[int, int], float]) -> Curve:
+        """value: of a position and a tooth pair in contact there."""
+        pitch = 2.0 * np.pi / self.model.pair.pinion.z
+        rows = [
+            (result.stand.angle + tooth * pitch, value(k, tooth))
+            for k, result in enumerate(self.results)
+            for tooth in (int(tooth) for tooth in np.unique(result.contact.tooth))
+        ]
+        angle, values = zip(*sorted(rows)) if rows else ((), ())
+        return Curve(np.array(angle), np.array(values))
+
+
+def mesh_force(found: MeshPeriods) -> Curve:
+    """Of the last mesh period [N; N/mm in 2D]."""
+    angle = np.array([moment.result.stand.angle for moment in found.moments])
+    return Curve(angle, np.array([moment.mesh_force for moment in found.moments]))
+
+
+def largest(values: Floats) -> float:
+    """Of the values (n,) that are known; NaN where none is."""
+    known = values[np.isfinite(values)]
+    return float(known.max()) if len(known) else float("nan")

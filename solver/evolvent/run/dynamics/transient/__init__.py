@@ -1,0 +1,1 @@
+"""Transient contact of a scene, from start to finish."""

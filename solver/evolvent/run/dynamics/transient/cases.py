@@ -1,0 +1,202 @@
+"""The cases of a scene, every speed at every friction coefficient, on one kind of meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
+from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.dynamics.transient.back_flanks import require_backlash
+from evolvent.dynamics.transient.certificates import certify_motion
+from evolvent.dynamics.transient.driven_pair import LEAST, driven_pair, loaded_as_static, resolved_modes
+from evolvent.dynamics.transient.kept_contacts import KeptContacts
+from evolvent.dynamics.transient.moving_pair import MovingPair
+from evolvent.dynamics.transient.pair_transient import PairState, PairTransient
+from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
+from evolvent.dynamics.transient.step_lengths.divided_steps import UNDIVIDED, DividedSteps
+from evolvent.fem.parallel.machine import machine_megabytes
+from evolvent.fem.parallel.ranks import on_first, together
+from evolvent.gears.gear_model import GearModel, Mesher, Preparer
+from evolvent.gears.meshing.levelled_meshes import run_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.solution.certificates import certify, certify_pitch
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
+from evolvent.gears.sweep.pitch_sweep import initial_state, uniform_pitch
+from evolvent.run.dynamics.transient.checks import transient_section
+from evolvent.run.dynamics.transient.kept_cases import KeptCases, Statics
+from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent_meshes.errors import EvolventError
+
+MODES, STEPS = "natural modes", "mesh periods"
+KEPT = 0.35
+"""Of the machine's memory: what the contacts of positions may take, beside the gears."""
+Motion = MeshPeriods | None
+"""None where it failed."""
+Found = Mapping[int, MeshPeriods | str]
+"""Number of a case -> its motion, or why there is none."""
+
+
+@dataclass(frozen=True)
+class PairMeshes:
+    """On which meshes a pair moves, and with which modes."""
+
+    mesh: Mesher = run_mesh
+    """Of a gear's sector."""
+    least: int = LEAST
+    """Modes of each harmonic, at least, where the scene does not say how many."""
+
+
+@dataclass(frozen=True)
+class PairCases:
+    """A pair that moves, beside its statics. Its methods are collective."""
+
+    scene: Scene
+    """With a section [transient]."""
+    pair: MovingPair
+    """On one kind of meshes."""
+    static: Statics
+    """Its positions without inertia."""
+    settings: DriveSettings
+    """How it vibrates."""
+    comm: MPI.Comm
+    """Ranks that share the cases."""
+
+    @staticmethod
+    def of(
+        scene: Scene, problem: GearProblem, settings: DriveSettings, on: PairMeshes, kept: KeptCases, comm: MPI.Comm,
+        progress: Progress, prepare: Preparer,
+    ) -> PairCases:  # fmt: skip
+        """Meshes, condenses, solves the statics that are not kept, and finds the modes. Collective. Raises MeshError,
+        TooMuchRelief, NotConverged, SearchError, BalanceError, ArchiveError, WriteError."""
+        section, dynamics = transient_section(scene), scene.dynamics or DynamicsSection()
+        known = on_first(comm, kept.read_static)
+        progress.stage(MESHING)
+        model = prepare(problem, comm, on.mesh, lambda: progress.stage(CONDENSING)).model
+        static = known or _statics(scene, model, kept, comm, progress)
+        progress.stage(MODES)
+        sampled = max(section.speeds_rpm) / 60.0 * problem.pair.pinion.z * scene.sweep.positions  # Hz
+        count, density = section.modes_per_harmonic, dynamics.density_kg_m3
+        modes = together(comm, lambda: resolved_modes(problem, model, density, sampled, count, on.least))
+        constant_speed = section.drive == "constant_speed"
+        pair = driven_pair(model, modes, settings, static[0], section.mode_damping_ratio, constant_speed)
+        return PairCases(scene, pair, static, settings, comm)
+
+    @property
+    def tasks(self) -> list[tuple[float, int]]:
+        """Speed [r/min] and index of the friction coefficient of each case."""
+        count = len(self.scene.contact.friction)
+        return [(speed, index) for speed in transient_section(self.scene).speeds_rpm for index in range(count)]
+
+    def loaded(self) -> list[MovingPair]:
+        """The pair under its loads at each friction coefficient."""
+        return [loaded_as_static(self.pair, results) for results in self.static]
+
+    def found(self, kept: KeptCases) -> dict[int, MeshPeriods]:
+        """All cases, those that are not kept divided among the ranks; on rank 0 all of them, none elsewhere. Raises
+        NotConverged, SearchError, BackFlanks, Unbalanced, ArchiveError, WriteError, on all ranks."""
+
+        def solved(number: int, transient: PairTransient, start: PairState) -> MeshPeriods:
+            found = self._until_steady(transient, start)
+            self._check(found, transient)
+            return found
+
+        return self._shared(kept, self.contacts(), solved)
+
+    def tried(self, kept: KeptCases, contacts: KeptContacts) -> Found:
+        """The same, where a case that fails has its reason instead of a motion, and a motion is not checked: it need
+        not be one that could be reported. contacts: the positions of its time steps. Raises ArchiveError, WriteError.
+        """
+        failures: dict[int, str] = {}
+
+        def solved(number: int, transient: PairTransient, start: PairState) -> MeshPeriods | None:
+            try:
+                return self._until_steady(transient, start)
+            except EvolventError as error:
+                failures[number] = str(error)
+                return None
+
+        found = self._shared(kept, contacts, solved)
+        every = self.comm.gather(failures) or []
+        return {**found, **{number: reason for each in every for number, reason in each.items()}}
+
+    def contacts(self, steps: int = 1) -> KeptContacts:
+        """The positions of a mesh period, for all cases of a rank. steps: between two positions of the scene."""
+        components = self.pair.model.bodies[0].d if any(self.scene.contact.friction) else 1
+        most = KEPT * 1e6 * machine_megabytes() / self.comm.size
+        return KeptContacts(self.pair, steps * self.scene.sweep.positions, components, most)
+
+    def _shared(
+        self, kept: KeptCases, contacts: KeptContacts, solved: Callable[[int, PairTransient, PairState], Motion]
+    ) -> dict[int, MeshPeriods]:
+        """Cases that are kept and those that are solved, on rank 0. solved: by number, transient and its start."""
+        known = together(self.comm, lambda: kept.read(len(self.tasks)) if self.comm.rank == 0 else {})
+        ended = self.comm.bcast(set(known))
+        missing = [number for number in range(len(self.tasks)) if number not in ended]
+
+        def own() -> dict[int, MeshPeriods]:
+            found: dict[int, MeshPeriods] = {}
+            numbers = missing[self.comm.rank :: self.comm.size]
+            if not numbers:
+                return found
+            starts = quasi_static_starts(self.pair, contacts.step_angle, list(self.scene.contact.friction))
+            for number in numbers:
+                transient = self._transient(number, contacts)
+                motion = solved(number, transient, starts[self.tasks[number][1]].at(transient.time_step))
+                if motion is not None:
+                    kept.write(number, motion)
+                    found[number] = motion
+            return found
+
+        gathered = self.comm.gather(together(self.comm, own)) or []
+        return {number: found for part in (known, *gathered) for number, found in part.items()}
+
+    def _transient(self, number: int, contacts: KeptContacts) -> PairTransient:
+        speed, index = self.tasks[number]
+        scheme = TimeScheme(transient_section(self.scene).spectral_radius)
+        friction = self.scene.contact.friction[index]
+        pair = loaded_as_static(self.pair, self.static[index])
+        return PairTransient(pair, friction, 2.0 * np.pi * speed / 60.0, scheme, contacts, self._division(contacts))
+
+    def _division(self, contacts: KeptContacts) -> DividedSteps:
+        """How steps between two positions are divided. Between positions that are closer than the scene's, steps are to
+        be shorter by as much: their error goes with the square of their length."""
+        section, closer = transient_section(self.scene), contacts.positions / self.scene.sweep.positions
+        if section.tolerance is None:
+            return UNDIVIDED
+        return DividedSteps(section.tolerance / closer**2, section.most_parts.bit_length() - 1)
+
+    def _until_steady(self, transient: PairTransient, start: PairState) -> MeshPeriods:
+        """Raises NotConverged, SearchError, Unbalanced."""
+        section = transient_section(self.scene)
+        return until_steady(transient, start, section.mesh_periods, section.steady_change)
+
+    def _check(self, found: MeshPeriods, transient: PairTransient) -> None:
+        """Raises BackFlanks, Unbalanced."""
+        require_backlash(found.lowest_error, self.settings.backlash, transient.name)
+        if found.is_steady:
+            load, energies = transient.pair.drive.torque / transient.pair.lever, found.energies
+            certify_motion(found.mean_force / load, energies.left / energies.passed, transient.name)
+
+
+def _statics(scene: Scene, model: GearModel, kept: KeptCases, comm: MPI.Comm, progress: Progress) -> Statics:
+    """The positions without inertia, at each friction coefficient. Collective. Raises BalanceError."""
+    pitch, frictions = uniform_pitch(model.pair.pinion.z, scene.sweep.positions), list(scene.contact.friction)
+    progress.stage(POSITIONS, len(pitch.angles))
+    swept = []
+    for position in sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm):
+        swept.append(position)
+        progress.reach(min(len(swept), len(pitch.angles)))
+    positions = [position.results for position in one_pitch(swept)]
+    for results in positions:
+        certify(results)
+    certify_pitch(positions)
+    static = [tuple(column) for column in zip(*positions)]
+    on_first(comm, lambda: kept.write_static(static))
+    return static

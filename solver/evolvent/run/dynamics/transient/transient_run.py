@@ -1,0 +1,104 @@
+"""Transient contact of a scene's gears, from start to finish. `evolvent transient` calls only this."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures
+from evolvent.dynamics.results.transient.errors import MovingCompanion, case_errors
+from evolvent.dynamics.results.transient.facts import sentences, transient_facts, write_facts
+from evolvent.dynamics.results.transient.rows import tooth_rows, transient_rows, write_rows
+from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.parallel.ranks import on_first
+from evolvent.gears.gear_model import Preparer, prepare_model
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.run.dynamics.transient.cases import STEPS, PairCases, PairMeshes
+from evolvent.run.dynamics.transient.checks import ANIMATION, PICTURE, WRITTEN, prepared_folder, transient_section
+from evolvent.run.dynamics.transient.kept_cases import KeptCases
+from evolvent.run.dynamics.transient.moving_companion import companion_of
+from evolvent.run.folder_checks import writing_to
+from evolvent.run.progress import OUTPUT, Progress
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.pair_dynamics import check_positions, drive_settings
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent.scene.skips import wanted_output
+
+
+def run_transient(
+    scene: Scene, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False,
+    prepare: Preparer = prepare_model,
+) -> list[str]:  # fmt: skip
+    """Moves the pair on at each speed and friction coefficient until its motion repeats, and writes tables and picture
+    to `out`. Returns sentences on what a reader has to know. Collective: the ranks share speeds and coefficients.
+
+    scene: with a section [transient]; its wear is left out.
+    resume: go on from the statics and the cases that an earlier call has ended.
+    overwrite: begin anew, and replace what an earlier call has written.
+    prepare: prepares gears that other calls share.
+
+    Raises InputError without that section; FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged,
+    SearchError, BalanceError, BackFlanks, Unbalanced, WriteError.
+    """
+    comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
+    transient_section(scene)
+    problem = gear_problem(scene)
+    check_positions(scene)
+    settings = drive_settings(problem.pair, scene.dynamics or DynamicsSection())
+
+    def kept(kind: str = "") -> KeptCases:
+        return KeptCases.of(scene, problem.pair, out, kind)
+
+    dolfinx_compat.silence_logs()
+    checked = writing_to(out, comm, lambda: prepared_folder(out, resume, overwrite))
+    with checked as said, Progress(hidden=hidden) as progress:
+        own = PairCases.of(scene, problem, settings, PairMeshes(), kept(), comm, progress, prepare)
+        progress.stage(STEPS)
+        found = own.found(kept())
+        companion, missing = companion_of(scene, problem, settings, kept, comm, progress, prepare)
+        progress.stage(OUTPUT)
+        return said + missing + on_first(comm, lambda: _written(own, found, companion, out))
+
+
+def _written(
+    own: PairCases, found: Mapping[int, MeshPeriods], companion: MovingCompanion | None, out: Path
+) -> list[str]:
+    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    scene, pair, frictions = own.scene, own.pair, own.scene.contact.friction
+    loads = [each.drive.torque / each.lever for each in own.loaded()]
+    cases = [
+        TransientCase(speed, frictions[i], found[number], own.static[i], loads[i])
+        for number, (speed, i) in enumerate(own.tasks)
+    ]
+    pressures = case_pressures(pair.model, cases)
+    errors = case_errors(pair.model, pressures, companion)
+    rows, teeth = list(transient_rows(pair.model, pressures, errors)), list(tooth_rows(pair.model, pressures, errors))
+    facts = transient_facts(pair.model, pressures, errors, pair.frequencies, pair.drive.inertia / pair.lever**2)
+
+    def drawn() -> bytes:
+        from evolvent.dynamics.figures.transient import transient_picture  # matplotlib takes a second to import
+
+        return transient_picture(scene.title, rows, teeth, facts)
+
+    def animated() -> bytes:
+        from evolvent.dynamics.figures.field_of_action import FieldOfAction
+
+        worst = int(np.argmax([fact.dynamic_factor for fact in facts]))
+        return FieldOfAction(scene.title, pair.model.pair, pressures[worst]).animation()
+
+    folder = RunFolder(out)
+    folder.remove(WRITTEN)
+    write_rows(folder, rows, teeth)
+    write_facts(folder, facts)
+    output = wanted_output(scene)
+    pictures = [Picture(PICTURE, drawn)] if output.pictures else []
+    pictures += [Picture(ANIMATION, animated)] if output.animation else []
+    tolerance = transient_section(scene).tolerance
+    unknown = [f"{each.case.name}: {bars.said}" for each, bars in zip(pressures, errors) if bars.said]
+    return [*draw(pictures, folder).failures, *sentences(facts, scene.sweep.positions, tolerance), *unknown]

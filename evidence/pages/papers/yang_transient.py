@@ -1,18 +1,23 @@
 """`python -m evidence.pages.papers.yang_transient --out DIR`: Yang's pair at both speeds, for docs/yang2022.md.
 
-Seven friction coefficients at 1500 and 3000 r/min under a constant torque on the pinion. Runs that an earlier call has
-ended are read again. `python -m evidence.pages` then writes the page.
+At 1500 and 3000 r/min: seven friction coefficients under a constant torque on the pinion, both gears free; the least
+and the largest coefficient as the paper drives the pair, at a constant speed of the pinion under a torque on the wheel;
+and its start from rest. Runs that an earlier call has ended are read again. `python -m evidence.pages` then writes the
+page.
 """
 
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
+from shutil import copy
 from typing import Any
 
 import numpy as np
 
 from evidence.checkout import DEMOS, DOCS
+from evidence.pages.papers import yang_start
 from evidence.pages.papers.kept_runs import kept
 from evidence.pages.papers.kept_runs.kept import Named
 from evidence.pages.papers.kept_runs.runs import Runs, keep_figures, read
@@ -24,17 +29,36 @@ COMMAND = "python -m evidence.pages.papers.yang_transient --out DIR"
 SPEEDS, LOW, HIGH = (1500, 3000), 0.07, 0.3
 PLAIN = "output.animation=false", "output.error_bars=false"
 FRICTIONS = 0.07, 0.08, 0.11, 0.12, 0.15, 0.2, 0.3
+
+
+@dataclass(frozen=True)
+class Way:
+    """How the pair is driven."""
+
+    words: str
+    """In the table."""
+    settings: tuple[str, ...]
+    """Of the scene."""
+
+
 WAYS = {
-    "pinion": ("transient.drive=free", "transient.modes_per_harmonic=0", f"contact.friction={list(FRICTIONS)}"),
-}
-"""Which gear holds the torque -> settings."""
+    "pinion": Way("torque on the pinion, both gears free; 20 time steps a mesh period, all inertia at the bores", (
+        "transient.drive=free", "transient.modes_per_harmonic=0", f"contact.friction={list(FRICTIONS)}",
+    )),
+    "wheel": Way("torque on the wheel, the pinion at constant speed, as in the paper; 60 steps, 77 natural modes", (
+        "load.on=wheel", "load.torque_Nm=882.353", "transient.drive=constant_speed", "sweep.positions=60",
+        f"contact.friction={[LOW, HIGH]}",
+    )),
+}  # fmt: skip
+"""By the gear that holds the torque."""
+PICTURE = "yang2022/at_speed.png"
 
 
 def figures(runs: Runs) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
-    for on, settings in WAYS.items():
+    for on, way in WAYS.items():
         speeds = f"transient.speeds_rpm={list(SPEEDS)}"
-        set_to = [f"--set={each}" for each in (*settings, speeds, *PLAIN)]
+        set_to = [f"--set={each}" for each in (*way.settings, speeds, *PLAIN)]
         words = module_run("evolvent", "transient", DEMOS / "yang2022.toml", "--level", "quick", "--overwrite",
                            "--quiet", *set_to)  # fmt: skip
         folder, cost = runs.ended(on, "transient.json", *words)
@@ -42,6 +66,8 @@ def figures(runs: Runs) -> Named:
         yield f"{on}_minutes", cost.cpu / 60.0
         yield from _of_cases(on, facts)
         yield from _of_teeth(on, folder)
+    copy(folder / "pictures/transient.png", DOCS / PICTURE)
+    yield from yang_start.figures()
 
 
 def _of_cases(on: str, facts: list[dict[str, Any]]) -> Named:
@@ -87,15 +113,14 @@ def _known(curve: np.ndarray[Any, np.dtype[np.float64]], column: int) -> tuple[A
 def table(docs: Path) -> str:
     """Both speeds, level quick."""
     f = kept.kept(docs / KEPT, COMMAND)
-    ways = {"pinion": "torque on the pinion, both gears free"}
     rows = [
         (
-            words, f"{speed}", f"{f[f'{on}_{speed}_periods']:.0f}", f"{f[f'{on}_{speed}_force_percent']:+.2f} %",
+            way.words, f"{speed}", f"{f[f'{on}_{speed}_periods']:.0f}", f"{f[f'{on}_{speed}_force_percent']:+.2f} %",
             f"{f[f'{on}_{speed}_swing_least_percent']:+.1f} to {f[f'{on}_{speed}_swing_most_percent']:+.1f} %",
             f"{f[f'{on}_{speed}_largest_percent']:+.2f} %", f"{f[f'{on}_{speed}_pressure_percent']:.1f} %",
             f"{f[f'{on}_{speed}_moving_before_percent']:+.1f} / {f[f'{on}_{speed}_moving_after_percent']:+.1f} %",
         )
-        for on, words in ways.items()
+        for on, way in WAYS.items()
         for speed in SPEEDS
     ]  # fmt: skip
     head = (
@@ -105,6 +130,11 @@ def table(docs: Path) -> str:
         "friction, μ 0.07 to 0.30: pressure of a tooth at −25° to −10° / 10° to 30°",
     )  # fmt: skip
     return markdown(head, rows)
+
+
+def start(docs: Path) -> str:
+    """The start from rest."""
+    return yang_start.sentence(kept.kept(docs / KEPT, COMMAND)) + "\n"
 
 
 if __name__ == "__main__":

@@ -119,7 +119,9 @@ def test_steps_are_short_where_it_hits() -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(solver, "solve_step", counted)
         moments = list(Transient(problem, TransientSettings(longest, 5, tolerance=0.005), start).run_until(end))
-    pressed = [moment.length for moment in moments if moment.solution.contacts[0].force[1] != 0.0]
+    forces = np.array([abs(moment.solution.contacts[0].force[1]) for moment in moments])
+    hit = forces > 1e-6 * forces.max()  # the last step of flight ends with a gap of nothing but rounding
+    pressed = [moment.length for moment, touches in zip(moments, hit) if touches]
     assert all(moment.error <= 0.005 for moment in moments)
     assert moments[0].length == longest > 10.0 * max(pressed)
     assert len(pressed) >= 20

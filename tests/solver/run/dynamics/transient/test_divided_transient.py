@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from evolvent.run.dynamics import transient
+from evolvent.run.dynamics.transient import cases as module
 from evolvent.run.dynamics.transient.kept_cases import KeptCases
 from evolvent.run.dynamics.transient.transient_run import run_transient
 from evolvent.scene.scene import Scene, load_scene
@@ -22,6 +22,7 @@ SETTINGS = (
     "mesh.level=quick", f"sweep.positions={POSITIONS}", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[2000]",
     f"transient.tolerance={TOLERANCE}", "transient.modes_per_harmonic=1",
     "dynamics.damping_ratio=0.2", "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
+    "output.error_bars=false",
 )  # fmt: skip
 
 
@@ -81,7 +82,7 @@ def test_kept_cases_have_their_steps(out: Path, monkeypatch: pytest.MonkeyPatch,
         assert [moment.steps for moment in again.read(2)[number].moments] == [moment.steps for moment in found.moments]
     assert KeptCases.of(scene("transient.tolerance=0.005"), cases.pair, out).identity != cases.identity
     before = [(out / name).read_bytes() for name in TABLES]
-    monkeypatch.setattr(transient, "until_steady", None)
+    monkeypatch.setattr(module, "until_steady", None)
     run_transient(scene(), out, resume=True, quiet=True)
     assert [(out / name).read_bytes() for name in TABLES] == before
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import json
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +53,20 @@ def scene(*settings: str) -> Scene:
     return load_scene(ROOT / "demos/he2022.toml", [*SETTINGS, *settings])
 
 
-def tables(folder: Path) -> list[bytes]:
-    return [(folder / name).read_bytes() for name in TABLES]
+def same_tables(one: Path, other: Path) -> bool:
+    """Whether both folders have the same tables, but for the last digits: products of matrices round by where these lie
+    in memory."""
+    return all(values(one / name) == pytest.approx(values(other / name), rel=1e-6, abs=1e-7) for name in TABLES)
+
+
+def values(path: Path) -> list[float]:
+    """All numbers of a table, those that are not known as −1."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".csv":
+        cells = [cell for row in csv.reader(text.splitlines()[1:]) for cell in row]
+    else:
+        cells = [value for fact in json.loads(text) for value in fact.values()]
+    return [-1.0 if cell in ("", None, "nan") else float(cell) for cell in cells]
 
 
 def kept(folder: Path) -> list[str]:
@@ -68,8 +82,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Killed in the second of two cases and resumed: statics and the first case are not computed again, and the tables
-    are those of a call that was not stopped, byte for byte; also where the companion is killed in its third motion of
-    four, and when resumed once more, where nothing is missing. Another scene is refused."""
+    are those of a call that was not stopped; also where the companion is killed in its third motion of four, and when
+    resumed once more, where nothing is missing. Another scene is refused."""
     counts: list[int] = []
     solved = module.until_steady
 
@@ -96,10 +110,10 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(module, "sweep_until_periodic", None)
     said = run_transient(scene(), tmp_path, resume=True, quiet=True)
     assert len(counts) == 2 + 4 + 2
-    assert tables(tmp_path) == tables(out)
+    assert same_tables(tmp_path, out)
     monkeypatch.setattr(module, "until_steady", None)
     assert run_transient(scene(), tmp_path, resume=True, quiet=True) == said
-    assert tables(tmp_path) == tables(out)
+    assert same_tables(tmp_path, out)
 
 
 def test_overwriting_begins_anew(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,11 +128,11 @@ def test_overwriting_begins_anew(out: Path, tmp_path: Path, monkeypatch: pytest.
 
 
 def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a call without them nothing is computed again but the companion; the tables are those of a call with them,
-    byte for byte."""
+    """Of a call without them nothing is computed again but the companion; the tables are those of a call with them.
+    """
     run_transient(scene("output.error_bars=false"), tmp_path, quiet=True)
     assert kept(tmp_path) == ["transient_0000.npz", "transient_0001.npz", "transient_static.npz"]
-    assert tables(tmp_path) != tables(out)
+    assert not same_tables(tmp_path, out)
     counts: list[int] = []
     solved = module.until_steady
 
@@ -129,7 +143,7 @@ def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypa
     monkeypatch.setattr(module, "until_steady", counted)
     run_transient(scene(), tmp_path, resume=True, quiet=True)
     assert len(counts) == 4
-    assert tables(tmp_path) == tables(out)
+    assert same_tables(tmp_path, out)
 
 
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
@@ -157,9 +171,9 @@ def test_a_case_that_cannot_be_read_is_refused(out: Path, tmp_path: Path) -> Non
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_go_on(run_script: Run, tmp_path: Path, ranks: int) -> None:
     """Where the last rank fails in its case, that of the other one is kept; resumed on both ranks it is not computed
-    again, and the tables are those of two ranks that were not stopped, byte for byte."""
+    again, and the tables are those of two ranks that were not stopped."""
     whole, cut, words = tmp_path / "whole", tmp_path / "cut", ["transient", "demos/he2022.toml"]
-    for setting in SETTINGS:
+    for setting in (*SETTINGS, "output.error_bars=false"):
         words += ["--set", setting]
     done = run_script("-c", WHOLE, *words, "--out", str(whole), ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
@@ -169,4 +183,4 @@ def test_ranks_go_on(run_script: Run, tmp_path: Path, ranks: int) -> None:
     done = run_script("-c", WHOLE, *words, "--out", str(cut), "--resume", ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
     assert (cut / "results/transient_0000.npz").stat().st_mtime_ns == before
-    assert tables(cut) == tables(whole)
+    assert same_tables(cut, whole)

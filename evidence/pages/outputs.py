@@ -78,6 +78,7 @@ FILES = (
     ("torque_map.csv", "`evolvent dynamics`: a line per torque and speed of the map"),
     ("dynamics.json", "`evolvent dynamics`: what the vibration is computed from, and its jumps"),
     ("operation.json", "`evolvent run` at an operating speed: the vibration under whose force contact was computed"),
+    ("transient.toml", "`evolvent transient`: the scene that was computed, with all its defaults"),
     ("transient.csv", "`evolvent transient`: a line per speed, friction coefficient and position of the mesh period"),
     ("transient_teeth.csv", "`evolvent transient`: a line per speed, coefficient and rotation of a tooth"),
     ("transient.json", "`evolvent transient`: figures of each speed and coefficient"),

@@ -227,8 +227,8 @@ def transient(
 
             for line in summary_lines(out):
                 typer.echo(line)
-            done(out, "transient.csv", "transient_teeth.csv", "transient.json", "pictures/transient.png",
-                 "pictures/field_of_action.gif")  # fmt: skip
+            done(out, "transient.toml", "transient.csv", "transient_teeth.csv", "transient.json",
+                 "pictures/transient.png", "pictures/field_of_action.gif")  # fmt: skip
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:

@@ -135,7 +135,7 @@ Overwrite = Annotated[
     bool, typer.Option("--overwrite", help="Remove an earlier run from DIR, once the gears are condensed.")
 ]
 
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only; the log file is written.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only.")]
 
 
 def _print_version(wanted: bool) -> None:

@@ -140,8 +140,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.strength": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem",
-        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive",
-        "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard", "strength.fatigue",
+        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "scene.checking",
+        "results.archive", "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard",
+        "strength.fatigue",
         "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
@@ -150,9 +151,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.dynamics.transient": (
         "meshes", "meshes.gears", "contact.transient.time_schemes", "fem.backend", "fem.parallel", "gears.problem",
-        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive",
-        "results.drawing", "dynamics", "dynamics.transient", "dynamics.transient.step_lengths",
-        "dynamics.results.transient", "dynamics.figures", "run",
+        "gears.meshing", "gears", "gears.sweep", "gears.pressure", "gears.solution", "scene", "scene.schema",
+        "scene.checking", "results.archive", "results.drawing", "dynamics", "dynamics.transient",
+        "dynamics.transient.step_lengths", "dynamics.results.transient", "dynamics.figures", "run",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

@@ -22,8 +22,8 @@ CHEAP = (
 """Settings that stand behind those of a line: what it computes takes seconds then."""
 FEW = ("sweep.positions=6",)
 FEWER = {
-    "run": CHEAP, "loads": CHEAP, "excitation": FEW, "strength": FEW, "transient": FEW,
-    "fatigue": CHEAP,
+    "run": CHEAP, "loads": CHEAP, "excitation": FEW, "strength": FEW,
+    "transient": (*FEW, "output.error_bars=false", "output.animation=false"), "fatigue": CHEAP,
     "study": (*FEW, "mesh.level=quick", "output.error_bars=false"),
     "dynamics": (*FEW, "dynamics.speeds=20", "dynamics.torque_percents=[50,100,200]", "dynamics.mesh=\"tangent\""),
 }

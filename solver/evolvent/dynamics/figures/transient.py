@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from evolvent.dynamics.results.transient.facts import TransientFacts
 from evolvent.dynamics.results.transient.rows import TransientRow, TransientToothRow
-from evolvent.results.drawing.style import FAINT, foot, friction_colours, note, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, foot, friction_colours, note, png, sheet, styled
 from evolvent_meshes.arrays import Floats
 
 Colour = tuple[float, ...]
@@ -19,6 +19,8 @@ LONG = 5
 """Entries of a legend in one column, at most one less."""
 BAND, BANDS = 0.15, 2
 """Opacity of error bars, and friction coefficients up to which they are drawn: more bands hide each other."""
+ROOM = 0.18
+"""Above the curves, of the height of a panel."""
 STATIC = {"ls": "--", "lw": 1.0}
 SUBTITLE = "The last mesh period, repeated. Solid: with inertia. Dashed: without, at the same positions."
 
@@ -47,10 +49,11 @@ def transient_figure(
             _pressures(pressures, own, colour, friction, banded)
         errors.set_ylabel("transmission error [µm]")
         pressures.set_ylabel("peak pressure [MPa]")
-        note(errors, f"{speed:g} r/min")
-    for axes in grid[:, 0]:
+        for axes in (errors, pressures):
+            note(axes, f"{speed:g} r/min")
+    for axes in grid.flat:  # room for notes and legend
         low, high = axes.get_ylim()
-        axes.set_ylim(low, high + 0.15 * (high - low))
+        axes.set_ylim(low, high + ROOM * (high - low))
     grid[0][1].legend(loc="upper right", ncols=1 if len(frictions) < LONG else 2)
     grid[-1][0].set_xlabel("rotation of the pinion [°]")
     grid[-1][1].set_xlabel("rotation of the pinion since the tooth met at the pitch point [°]")
@@ -79,6 +82,7 @@ def _errors(axes: Axes, rows: Sequence[TransientRow], colour: Colour, banded: bo
         axes.plot(over, np.tile(values, 2), color=colour, **style)
     axes.set_xlim(0.0, 2.0 * pitch)
     axes.axvline(pitch, color=FAINT, lw=0.8, zorder=0)
+    axes.text(pitch, 0.02, " one pitch", color=INK, fontsize=7, va="bottom", transform=axes.get_xaxis_transform())
 
 
 def _pressures(

@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from evidence.benchmarks.accuracy.transient_bars import COLUMNS, FIGURES, hit_rows, total
-from evidence.tables import write_csv
+from evidence.benchmarks.accuracy.transient_bars import (
+    COLUMNS,
+    FIGURES,
+    KEPT,
+    RESONANCE,
+    HitRow,
+    hit_rows,
+    inside,
+    said,
+)
+from evidence.tables import write_csv, write_rows
 from evolvent_meshes.arrays import Floats
 
 PLACES = np.arange(4.0)
@@ -38,7 +48,20 @@ def test_bars_are_held_against_the_same_places(tmp_path: Path) -> None:
     assert [(row.inside, row.count) for row in rows] == [(1, 1)] * 3 + [(2, 3)] * 5
     assert {row.separated for row in rows} == {0.25}
     assert rows[-1].median_error == pytest.approx(0.1 / (10.0 + 0.5 / 3.0))
-    assert total(rows) == "figures: 3 of 3 inside; values of columns: 10 of 15 inside"
+    assert inside(rows) == "13 of 18"
+
+
+def test_what_is_said(tmp_path: Path) -> None:
+    """Figures, values of columns, and forces at the resonance are counted apart; without a table there is an error that
+    names the command."""
+    with pytest.raises(ValueError, match="transient_bars --out DIR"):
+        said(tmp_path)
+    row = HitRow("", 100.0, 0.0, "dynamic_factor", 1, 1, 0.1, 0.1)
+    rows = [row, replace(row, figure="transient.csv: mesh_force_N", inside=3, count=4)]
+    rows.append(replace(rows[1], speed=RESONANCE, inside=1))
+    write_rows(tmp_path / KEPT, rows)
+    text = said(tmp_path)
+    assert "of 1 of 1 figures" in text and "of 4 of 8 values" in text and "resonance, 1 of 4:" in text
 
 
 def test_a_bar_that_is_not_known_holds_nothing(tmp_path: Path) -> None:

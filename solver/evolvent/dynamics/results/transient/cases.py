@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.pressure.contact_cells import cells_across
 from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
@@ -54,6 +57,13 @@ class CasePressures:
     def peaks(self) -> tuple[Floats, Floats]:
         """Largest pressure at each position (n,), with inertia and without [MPa]."""
         return self.moving.at_positions, self.still.at_positions
+
+
+def elements_across(model: GearModel, pressures: Sequence[CasePressures]) -> float:
+    """Across the fitted contact width, median of all slices of all cases; NaN where nothing touches."""
+    pinion = model.bodies[0]
+    half_widths = np.concatenate([cut.half_width for each in pressures for cut in each.moving.cuts])
+    return cells_across(half_widths, pinion.z, pinion.roll_length, pinion.gear.base_radius, pinion.mesh.order)
 
 
 def case_pressures(model: GearModel, cases: Sequence[TransientCase]) -> list[CasePressures]:

@@ -15,7 +15,8 @@ every other position was up to seven times smaller than the error of the dynamic
 the step up to four times.
 
 Pressures have the errors of a run: of fitted peaks against Hertz' for the computed loads, and of the loads, here by
-both motions of the companion. Statics have theirs by the companion's statics and by the spacing of positions.
+both motions of the companion; the largest one that of the spacing of positions, between which a pressure is not
+evaluated. Statics have theirs by the companion's statics and by the spacing of positions.
 """
 
 from __future__ import annotations
@@ -142,7 +143,7 @@ def _errors(
         UM * replace(error, factor=VARYING_FACTOR[order]).of_varying(np.ptp),
         _pitch_curve(LOADED, UM, static, calm, order).peak_to_peak_error,
         force.of_figure(np.max) / case.load,
-        difference(largest, fitted.positions, hertz.positions) + peaks.of_figure(largest),
+        difference(largest, fitted.positions, hertz.positions) + peaks.of_figure(largest) + _spacing_error(moving),
         _static_pressure_error(static, calm, LOAD_FACTOR[order]),
         _natural_frequency_error(static, calm, order),
     )
@@ -164,14 +165,19 @@ def _natural_frequency_error(static: MotionCurves, calm: MotionCurves, order: in
 
 
 def _static_pressure_error(static: MotionCurves, calm: MotionCurves, factor: float) -> float:
-    """Of the largest one, by the mesh and by the spacing of positions: what every other one misses, and what may lie
-    between two."""
+    """Of the largest one, by the mesh and by the spacing of positions."""
     fitted, hertz, (own, coarse) = static.fitted, static.hertz, (each.line_loads for each in (static, calm))
     mesh = difference(largest, fitted.positions, hertz.positions) + factor * difference(
         largest, own.positions, coarse.positions
     )
-    values, teeth = fitted.positions.values, fitted.teeth
+    return mesh + _spacing_error(static)
+
+
+def _spacing_error(curves: MotionCurves) -> float:
+    """Of the largest pressure by the spacing of positions: what every other one misses, and what may lie between
+    two."""
+    values, teeth = curves.fitted.positions.values, curves.fitted.teeth
     top = largest(values)
     missed = np.mean([top - largest(values[every_other(len(values), first)]) for first in (0, 1)])
     between = largest(np.append(tops((teeth.angle, teeth.values), jumps=True), top)) - top
-    return float(mesh + np.fmax(missed, between))
+    return float(np.fmax(missed, between))

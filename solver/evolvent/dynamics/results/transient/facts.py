@@ -62,8 +62,8 @@ class TransientFacts:
     mean_force_N: float
     """Of the mesh, over the last period."""
     load_N: float
-    """The load along the line of action: the same in a steady state. Where both gears are free, the mean of what loads
-    either."""
+    """The load along the line of action: the same in a steady state. Where both gears are free, T_1/r_b1 and T_2/r_b2,
+    which friction makes differ, weighed by I_2 r_b1² and I_1 r_b2²."""
     peak_to_peak_um: float
     """Of the transmission error."""
     peak_to_peak_um_error: float
@@ -83,7 +83,7 @@ class TransientFacts:
     max_pressure_MPa: float
     """Largest of transient.csv; null where none is known."""
     max_pressure_MPa_error: float
-    """Its estimated error by mesh, modes and time steps; null likewise."""
+    """Its estimated error by mesh, modes, time steps and the spacing of positions; null likewise."""
     static_max_pressure_MPa: float
     """The same without inertia."""
     static_max_pressure_MPa_error: float
@@ -151,9 +151,11 @@ def write_facts(folder: RunFolder, facts: Sequence[TransientFacts]) -> None:
 def sentences(facts: Sequence[TransientFacts], positions: int, tolerance: float | None) -> list[str]:
     """On motions that are not steady, and on speeds at which time steps are too long. positions: of a mesh period;
     tolerance: of the estimated error of a step, None for equal steps."""
+    jitter = "" if tolerance is None else "lower transient.tolerance, as changes of the time step add jitter; else "
     unsteady = [
-        f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: not steady after {fact.mesh_periods} mesh periods; raise "
-        "transient.mesh_periods, or look whether the motion repeats after several meshes (`evolvent dynamics`)"
+        f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: not steady after {fact.mesh_periods} mesh periods; "
+        f"{jitter}raise transient.mesh_periods, or look whether the motion repeats after several meshes (`evolvent "
+        "dynamics`)"
         for fact in facts
         if not fact.steady
     ]

@@ -29,7 +29,7 @@ from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import initial_state, uniform_pitch
 from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.run.dynamics.transient.kept_cases import KeptCases, Statics
-from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
+from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, POSITIONS, Progress
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.errors import EvolventError
@@ -67,6 +67,8 @@ class PairCases:
     """How it vibrates."""
     comm: MPI.Comm
     """Ranks that share the cases."""
+    progress: Progress
+    """Shows the cases of this rank."""
 
     @staticmethod
     def of(
@@ -86,7 +88,7 @@ class PairCases:
         modes = together(comm, lambda: resolved_modes(problem, model, density, sampled, count, on.least))
         constant_speed = section.drive == "constant_speed"
         pair = driven_pair(model, modes, settings, static[0], section.mode_damping_ratio, constant_speed)
-        return PairCases(scene, pair, static, settings, comm)
+        return PairCases(scene, pair, static, settings, comm, progress)
 
     @property
     def tasks(self) -> list[tuple[float, int]]:
@@ -107,7 +109,7 @@ class PairCases:
             self._check(found, transient)
             return found
 
-        return self._shared(kept, self.contacts(), solved)
+        return self._shared(kept, self.contacts(), solved, STEPS)
 
     def tried(self, kept: KeptCases, contacts: KeptContacts) -> Found:
         """The same, where a case that fails has its reason instead of a motion, and a motion is not checked: it need
@@ -122,7 +124,7 @@ class PairCases:
                 failures[number] = str(error)
                 return None
 
-        found = self._shared(kept, contacts, solved)
+        found = self._shared(kept, contacts, solved, ERROR_BARS)
         every = self.comm.gather(failures) or []
         return {**found, **{number: reason for each in every for number, reason in each.items()}}
 
@@ -133,9 +135,11 @@ class PairCases:
         return KeptContacts(self.pair, steps * self.scene.sweep.positions, components, most)
 
     def _shared(
-        self, kept: KeptCases, contacts: KeptContacts, solved: Callable[[int, PairTransient, PairState], Motion]
-    ) -> dict[int, MeshPeriods]:
-        """Cases that are kept and those that are solved, on rank 0. solved: by number, transient and its start."""
+        self, kept: KeptCases, contacts: KeptContacts, solved: Callable[[int, PairTransient, PairState], Motion],
+        stage: str,
+    ) -> dict[int, MeshPeriods]:  # fmt: skip
+        """Cases that are kept and those that are solved, on rank 0. solved: by number, transient and its start. stage:
+        to be shown."""
         known = together(self.comm, lambda: kept.read(len(self.tasks)) if self.comm.rank == 0 else {})
         ended = self.comm.bcast(set(known))
         missing = [number for number in range(len(self.tasks)) if number not in ended]
@@ -145,6 +149,7 @@ class PairCases:
             numbers = missing[self.comm.rank :: self.comm.size]
             if not numbers:
                 return found
+            self.progress.stage(stage, len(numbers))
             starts = quasi_static_starts(self.pair, contacts.step_angle, list(self.scene.contact.friction))
             for number in numbers:
                 transient = self._transient(number, contacts)
@@ -152,6 +157,7 @@ class PairCases:
                 if motion is not None:
                     kept.write(number, motion)
                     found[number] = motion
+                self.progress.advance()
             return found
 
         gathered = self.comm.gather(together(self.comm, own)) or []

@@ -14,8 +14,8 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.errors import InputError
 
-PICTURE, ANIMATION = "transient.png", "field_of_action.gif"
-WRITTEN = TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS, f"pictures/{PICTURE}", f"pictures/{ANIMATION}"
+PICTURE, ANIMATION, SCENE = "transient.png", "field_of_action.gif", "transient.toml"
+WRITTEN = SCENE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS, f"pictures/{PICTURE}", f"pictures/{ANIMATION}"
 
 
 def transient_section(scene: Scene) -> TransientSection:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures
+from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures, elements_across
 from evolvent.dynamics.results.transient.errors import MovingCompanion, case_errors
 from evolvent.dynamics.results.transient.facts import sentences, transient_facts, write_facts
 from evolvent.dynamics.results.transient.rows import tooth_rows, transient_rows, write_rows
@@ -16,14 +16,23 @@ from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
-from evolvent.run.dynamics.transient.cases import STEPS, PairCases, PairMeshes
-from evolvent.run.dynamics.transient.checks import ANIMATION, PICTURE, WRITTEN, prepared_folder, transient_section
+from evolvent.run.dynamics.transient.cases import PairCases, PairMeshes
+from evolvent.run.dynamics.transient.checks import (
+    ANIMATION,
+    PICTURE,
+    SCENE,
+    WRITTEN,
+    prepared_folder,
+    transient_section,
+)
 from evolvent.run.dynamics.transient.kept_cases import KeptCases
 from evolvent.run.dynamics.transient.moving_companion import companion_of
 from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import OUTPUT, Progress
+from evolvent.scene.checking.scene_warnings import few_cells
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
@@ -59,7 +68,6 @@ def run_transient(
     checked = writing_to(out, comm, lambda: prepared_folder(out, resume, overwrite))
     with checked as said, Progress(hidden=hidden) as progress:
         own = PairCases.of(scene, problem, settings, PairMeshes(), kept(), comm, progress, prepare)
-        progress.stage(STEPS)
         found = own.found(kept())
         companion, missing = companion_of(scene, problem, settings, kept, comm, progress, prepare)
         progress.stage(OUTPUT)
@@ -94,11 +102,14 @@ def _written(
 
     folder = RunFolder(out)
     folder.remove(WRITTEN)
+    folder.write_text(SCENE, scene.resolved_toml())
     write_rows(folder, rows, teeth)
     write_facts(folder, facts)
     output = wanted_output(scene)
     pictures = [Picture(PICTURE, drawn)] if output.pictures else []
     pictures += [Picture(ANIMATION, animated)] if output.animation else []
     tolerance = transient_section(scene).tolerance
+    across = elements_across(pair.model, pressures)
+    coarse = [] if across >= FEWEST_CELLS else [f"{across:.1f} elements across the contact (median): {few_cells()}"]
     unknown = [f"{each.case.name}: {bars.said}" for each, bars in zip(pressures, errors) if bars.said]
-    return [*draw(pictures, folder).failures, *sentences(facts, scene.sweep.positions, tolerance), *unknown]
+    return [*draw(pictures, folder).failures, *sentences(facts, scene.sweep.positions, tolerance), *coarse, *unknown]

@@ -42,9 +42,10 @@ def rows(path: Path) -> list[list[float]]:
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Nothing has to be said: motions are steady, the tolerance is reached."""
+    """Of the motions nothing has to be said: they are steady, the tolerance is reached."""
     folder = tmp_path_factory.mktemp("divided")
-    assert run_transient(scene(), folder, quiet=True) == []
+    (said,) = run_transient(scene(), folder, quiet=True)
+    assert "elements across the contact" in said
     return folder
 
 
@@ -90,7 +91,7 @@ def test_kept_cases_have_their_steps(out: Path, monkeypatch: pytest.MonkeyPatch,
 def test_a_tolerance_that_is_not_reached_is_named(tmp_path: Path) -> None:
     """Halves at most, and a tolerance of a millionth: a sentence has the error, the length and what to do."""
     few = scene("transient.tolerance=1e-6", "transient.most_parts=2", "contact.friction=0", "transient.mesh_periods=2")
-    unsteady, beyond = run_transient(few, tmp_path, quiet=True)
+    unsteady, beyond, _ = run_transient(few, tmp_path, quiet=True)
     (fact,) = facts(tmp_path)
     assert "not steady" in unsteady
     assert "2000 r/min, μ = 0: wanted an error of a time step of at most transient.tolerance = 1e-06" in beyond
@@ -112,7 +113,7 @@ def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: 
     one, two = (rows(folder / "transient.csv") for folder in (out, tmp_path / "out"))
     assert len(one) == len(two)
     for first, second in zip(one, two):
-        assert second == pytest.approx(first, rel=1e-6, abs=1e-6)
+        assert second == pytest.approx(first, rel=1e-6, abs=1e-6, nan_ok=True)
     steps = "mesh_periods", "time_steps", "rejected_steps"
     own, other = ([[fact[name] for name in steps] for fact in facts(each)] for each in (out, tmp_path / "out"))
     assert own == other

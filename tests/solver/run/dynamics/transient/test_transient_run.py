@@ -42,10 +42,11 @@ def rows(path: Path) -> list[dict[str, float]]:
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("transient")
-    slow, fast = run_transient(scene(), folder, quiet=True)
+    slow, fast, few = run_transient(scene(), folder, quiet=True)
     assert slow.startswith("30 r/min: the pair's own vibration")
     assert "error bars may not hold" in slow and "error bars" not in fast
     assert fast.startswith("2000 r/min: the pair's own vibration")
+    assert "elements across the contact (median): below 2" in few
     return folder
 
 

@@ -79,5 +79,9 @@ def fatigue(
         require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
         warn(run_fatigue(loaded, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
+            from evolvent.run.strength.fatigue_lines import fatigue_lines
+
+            for line in fatigue_lines(out):
+                typer.echo(line)
             done(out, "fatigue.toml", "fatigue.csv", "fatigue_life.csv", "fatigue_map.csv", "fatigue_depth.csv",
                   "fatigue.json", "pictures/fatigue.png")  # fmt: skip

@@ -68,20 +68,21 @@ class _SnesTangent:
     """Matrix and preconditioner in one for petsc4py: `apply` is the exact inverse, times the step length.
 
     at: x of the tangent.
-    error: exception of a callback, raised again after SNES has returned: one that unwinds through PETSc leaves SNES in
-        an undefined state, and the process ends in a segmentation fault.
+    error: exception of a callback, that of a signal included, raised again after SNES has returned: one that unwinds
+        through PETSc leaves SNES in an undefined state, and the process ends in a segmentation fault, or PETSc puts an
+        error of its own in its place.
     """
 
     def __init__(self, problem: NonlinearProblem) -> None:
         self.problem = problem
         self.at: Floats = np.zeros(0)
-        self.error: Exception | None = None
+        self.error: BaseException | None = None
 
     def apply(self, _: PETSc.PC, right: PETSc.Vec, result: PETSc.Vec) -> None:
         try:
             residual = np.array(right.array_r)
             result.array[:] = self._shortened(self.problem.solve(self.at, residual))
-        except Exception as error:
+        except BaseException as error:
             self.error = error
             result.array[:] = 0.0
 
@@ -117,7 +118,7 @@ def solve(problem: NonlinearProblem, start: Floats, stage: str, limit: int, tole
     def residual(_: PETSc.SNES, at: PETSc.Vec, out: PETSc.Vec) -> None:
         try:
             out.array[:] = problem.residual(np.array(at.array_r))
-        except Exception as error:
+        except BaseException as error:
             tangent.error = error
             out.array[:] = np.nan
 

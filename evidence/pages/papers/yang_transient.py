@@ -67,7 +67,7 @@ def figures(runs: Runs) -> Named:
         yield from _of_cases(on, facts)
         yield from _of_teeth(on, folder)
     copy(folder / "pictures/transient.png", DOCS / PICTURE)
-    yield from yang_start.figures()
+    yield from yang_start.figures(facts[0])
 
 
 def _of_cases(on: str, facts: list[dict[str, Any]]) -> Named:

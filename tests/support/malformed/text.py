@@ -7,7 +7,7 @@ from tests.support.scene_texts import YANG
 NOT_PARSED: dict[str, tuple[str, list[str], str, str, str]] = {
     # no TOML, no override
     "no TOML": (YANG + "\n= 3\n", [], "scene file", "no TOML", "mend that line"),
-    "key twice": (YANG + "\npositions = 30\n", [], "scene file", "no TOML", "every key only once"),
+    "key twice": (YANG + "\nyield_stress_MPa = 30.0\n", [], "scene file", "no TOML", "every key only once"),
     "override without value": (YANG, ["load.torque_Nm"], "--set", "load.torque_Nm", "--set load.torque_Nm=300"),
     "override with an empty value": (
         YANG,
@@ -48,7 +48,7 @@ NOT_PARSED: dict[str, tuple[str, list[str], str, str, str]] = {
         YANG + "".join(f"k{i} = 1\n" for i in range(10_000)), [], "scene file", "9980 more errors", "mend these first",
     ),
     "key with a line break": (YANG, ['"a\\nb"=1'], '"\\"a\\\\nb\\""', "an unknown key", "delete it"),
-    "Greek key": (YANG + '"τ" = 1\n', [], 'sweep."τ"', "unknown key", "delete it"),
+    "Greek key": (YANG + '"τ" = 1\n', [], 'fatigue."τ"', "unknown key", "delete it"),
     "empty key": (YANG, ["=3"], "--set", '"=3"', "--set load.torque_Nm=300"),
     "nothing to set": (YANG, [""], "--set", '""', "--set load.torque_Nm=300"),
     "two dots": (YANG, ["pinion..teeth=17"], "--set", "pinion..teeth", "--set load.torque_Nm=300"),

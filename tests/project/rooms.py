@@ -151,7 +151,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.dynamics.transient": (
         "meshes", "meshes.gears", "contact.transient.time_schemes", "fem.backend", "fem.parallel", "gears.problem",
-        "gears.meshing", "gears", "gears.sweep", "gears.pressure", "gears.solution", "scene", "scene.schema",
+        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema",
         "scene.checking", "results.archive", "results.drawing", "dynamics", "dynamics.transient",
         "dynamics.transient.step_lengths", "dynamics.results.transient", "dynamics.figures", "run",
     ),

@@ -121,10 +121,8 @@ class ModalSurface:
 
     def times(self, force: Reals) -> Reals:
         """See `SurfaceCompliance.times`."""
-        return self._product(force.ravel()).reshape(force.shape)
-
-    def _product(self, force: Reals) -> Reals:
-        return np.asarray(self.modes @ (self.amounts * (force @ self.modes)), dtype=force.dtype)
+        moved = self.modes @ (self.amounts * (force.ravel() @ self.modes))
+        return np.asarray(moved, dtype=force.dtype).reshape(force.shape)
 
     def normal(self) -> ModalSurface:
         """See `SurfaceCompliance.normal`."""

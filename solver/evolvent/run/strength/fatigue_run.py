@@ -19,14 +19,14 @@ from evolvent.results.archive.error_bar_data import EstimatedErrors
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.error_bars.estimation import estimated_errors
-from evolvent.results.mesh_facts import cells_across, few_cells_across
+from evolvent.results.mesh_facts import cells_across
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.tables import csv_text
 from evolvent.run.coarse_run import as_run, solve_companion
 from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
-from evolvent.scene.checking.scene_warnings import few_cells
+from evolvent.scene.checking.scene_warnings import coarse_contact
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.fatigue import FatigueSection
@@ -174,6 +174,5 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
             folder.write_text(name, csv_text(values))
     folder.write_text(FATIGUE_FACTS, facts_text(facts))
     failures = draw([Picture(PICTURE, drawn)] if wanted_output(run.scene).pictures else [], folder).failures
-    few = [f"{cells_across(run):.1f} elements across the contact (median): {few_cells()}"]
-    said = [*failures, *(few if few_cells_across(run) else [])]
+    said = [*failures, *coarse_contact(cells_across(run))]
     return [*said, *(sentence for pair in zip(facts, found) for sentence in warnings_of(*pair))]

@@ -49,6 +49,11 @@ def _expected(scene: Scene) -> Iterator[str]:
         yield from folding_warnings(problem, sector_resolutions(problem))
 
 
+def coarse_contact(across: float) -> list[str]:
+    """A sentence where fewer elements than `FEWEST_CELLS` lie across the contact, in the median; else none."""
+    return [] if across >= FEWEST_CELLS else [f"{across:.1f} elements across the contact (median): {few_cells()}"]
+
+
 def few_cells() -> str:
     """The consequence of fewer cells than `FEWEST_CELLS`, and the remedy."""
     return f"below {FEWEST_CELLS:g}, peak pressures {SCATTER}: {FINER}."

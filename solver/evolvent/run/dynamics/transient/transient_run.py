@@ -16,7 +16,6 @@ from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
-from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.transient.cases import PairCases, PairMeshes
@@ -32,7 +31,7 @@ from evolvent.run.dynamics.transient.kept_cases import KeptCases
 from evolvent.run.dynamics.transient.moving_companion import companion_of
 from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import OUTPUT, Progress
-from evolvent.scene.checking.scene_warnings import few_cells
+from evolvent.scene.checking.scene_warnings import coarse_contact
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
@@ -109,7 +108,6 @@ def _written(
     pictures = [Picture(PICTURE, drawn)] if output.pictures else []
     pictures += [Picture(ANIMATION, animated)] if output.animation else []
     tolerance = transient_section(scene).tolerance
-    across = elements_across(pair.model, pressures)
-    coarse = [] if across >= FEWEST_CELLS else [f"{across:.1f} elements across the contact (median): {few_cells()}"]
+    coarse = coarse_contact(elements_across(pair.model, pressures))
     unknown = [f"{each.case.name}: {bars.said}" for each, bars in zip(pressures, errors) if bars.said]
     return [*draw(pictures, folder).failures, *sentences(facts, scene.sweep.positions, tolerance), *coarse, *unknown]

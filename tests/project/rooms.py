@@ -29,7 +29,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "contact.transient.time_schemes": ("meshes",),
     "contact.transient": (
-        "meshes", "fem", "fem.modes", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
+        "meshes", "fem", "fem.modes", "contact.newton", "contact.problem", "contact.step",
         "contact.transient.time_schemes",
     ),
     "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),

@@ -29,22 +29,28 @@ SEARCHES = 12
 
 Solved = tuple[StepSystem, Solution, DeformedSurfaces]
 SystemOf = Callable[[Problem, SearchPositions], StepSystem]
+Solve = Callable[[StepSystem, DeformedSurfaces | None], tuple[Solution, DeformedSurfaces]]
 
 
 class PairingNotSettled(ResultError):
     """The surfaces meet elsewhere after each search, or overlap where there are no pairs."""
 
 
-def solve_with_displaced_search(system_of: SystemOf, problem: Problem, previous: DeformedSurfaces | None) -> Solved:
+def solve_with_displaced_search(
+    system_of: SystemOf, problem: Problem, previous: DeformedSurfaces | None, solve: Solve = StepSystem.solve
+) -> Solved:
     """The equilibrium of a step with the pairs of its displaced surfaces, and the deformed surfaces for the next step.
 
     system_of: makes the step's system from the problem, whose reaches may have grown, and the positions for the search.
-    previous: deformed surfaces of the step before, from which the slip is measured. The iterations of the solution are
-    those of all searches. Raises NotConverged, SearchError, PairingNotSettled, SmallStrainExceeded.
+    previous: deformed surfaces of the step before, from which the slip is measured.
+    solve: solves a system, with the slip since `previous`.
+
+    The iterations of the solution are those of all searches. Raises NotConverged, SearchError, PairingNotSettled,
+    SmallStrainExceeded.
     """
     last: Solved | None = None
     try:
-        for solved in _searches(system_of, problem, previous):
+        for solved in _searches(system_of, problem, previous, solve):
             last = solved
     except (NotConverged, SearchError, PairingNotSettled):
         if last is not None:
@@ -55,13 +61,15 @@ def solve_with_displaced_search(system_of: SystemOf, problem: Problem, previous:
     return last
 
 
-def _searches(system_of: SystemOf, problem: Problem, previous: DeformedSurfaces | None) -> Iterator[Solved]:
+def _searches(
+    system_of: SystemOf, problem: Problem, previous: DeformedSurfaces | None, solve: Solve
+) -> Iterator[Solved]:
     """Solutions from search to search; the last one has pairs that hold."""
     search_at: SearchPositions = None
     iterations = 0
     for searches in range(1, SEARCHES + 1):
         system = system_of(problem, search_at)
-        solution, deformed = system.solve(previous)
+        solution, deformed = solve(system, previous)
         iterations += solution.iterations
         yield system, replace(solution, iterations=iterations, searches=searches), deformed
         checks = [

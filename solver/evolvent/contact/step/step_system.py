@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
-from typing import Self
 
 import numpy as np
 import scipy.sparse as sp
@@ -144,14 +143,11 @@ class StepSystem:
         return DenseCompliance(whole.matrix, self.d) if self.friction.any() else whole
 
     def answering(
-        self, responses: Sequence[BodyResponse], motions: Sequence[RigidMotions], least_scale: float
-    ) -> Self:
-        """With the same pairs, and other responses and rigid motions, prescribed or free, of the bodies.
-
-        least_scale: see `CondensedSystem`.
-        """
+        self, step: Step, responses: Sequence[BodyResponse], motions: Sequence[RigidMotions], least_scale: float
+    ) -> StepSystem:
+        """With the same pairs, in a step with the same placements; least_scale: see `CondensedSystem`."""
         other = copy(self)
-        other.responses, other.motions, other.least_scale = responses, list(motions), least_scale
+        other.step, other.responses, other.motions, other.least_scale = step, responses, list(motions), least_scale
         other.__dict__.pop("compliance", None)  # cached
         return other
 
@@ -194,6 +190,10 @@ class StepSystem:
         except FreeMotion as failure:
             which = free_motion(self.problem.bodies, self.motions, normal_part(system).motion)
             raise FreeMotion(f"{failure}; {which}" if which else str(failure)) from failure
+        return self.result(system, state, slip)
+
+    def result(self, system: CondensedSystem, state: Equilibrium, slip: Floats) -> tuple[Solution, DeformedSurfaces]:
+        """Of an equilibrium of `system`; slip: (Σn, d−1) [mm], see `slip`."""
         return self._solution(system, state, slip), self._deformed_surfaces(state)
 
     def slip(self, previous: DeformedSurfaces | None) -> Floats:
@@ -230,7 +230,7 @@ class StepSystem:
                 "more than μ times the force between them; prescribe that motion instead (Freedom with a displacement)"
             ) from failure
 
-    def _nodal_forces(self, state: Equilibrium) -> Floats:
+    def nodal_forces(self, state: Equilibrium) -> Floats:
         """(Σn, d) [N] in local frames, with zeros where there is no friction."""
         return with_components(state.force, self.d)
 
@@ -244,11 +244,11 @@ class StepSystem:
 
     def _point_slip(self, system: CondensedSystem, state: Equilibrium, slip: Floats) -> Floats:
         """Slip at the points in this step, (Σq, d−1) [mm]: (q − τ)/γ_t with the trial traction q."""
-        jump = system.jumps(self._nodal_forces(state), state.motion)[:, 1:] + slip
+        jump = system.jumps(self.nodal_forces(state), state.motion)[:, 1:] + slip
         τ = state.traction[:, 1:] if state.traction.shape[1] > 1 else 0.0
         return np.asarray(system.operator.shape @ jump - τ / system.operator.stabiliser[:, 1:])
 
-    def _body_motions(self, state: Equilibrium) -> list[Floats]:
+    def body_motions(self, state: Equilibrium) -> list[Floats]:
         """Per body, amplitudes (r,) of all rigid motions, prescribed ones included."""
         result, at = [], 0
         for motions in self.motions:
@@ -259,7 +259,7 @@ class StepSystem:
         return result
 
     def _solution(self, system: CondensedSystem, state: Equilibrium, slip: Floats) -> Solution:
-        force = self._nodal_forces(state)
+        force = self.nodal_forces(state)
         point_slip = self._split(self._point_slip(system, state, slip))
         contacts = tuple(
             ContactResult.of(*each)
@@ -268,7 +268,7 @@ class StepSystem:
         largest = max(system.scale, float(np.abs(force).sum()))
         return Solution(
             contacts=contacts,
-            motions=tuple(self._body_motions(state)),
+            motions=tuple(self.body_motions(state)),
             iterations=state.iterations,
             imbalance=state.residual / largest if largest else 0.0,
             nodal_forces=tuple(-(E.T @ force.ravel()) for E in self.maps),
@@ -278,10 +278,10 @@ class StepSystem:
         )
 
     def _deformed_surfaces(self, state: Equilibrium) -> DeformedSurfaces:
-        force = self._nodal_forces(state).ravel()
+        force = self.nodal_forces(state).ravel()
         functionals = [
             r.displacement - r.compliance @ (E.T @ force) + b.motion_shapes @ δ
-            for b, r, E, δ in zip(self.condensed, self.responses, self.maps, self._body_motions(state))
+            for b, r, E, δ in zip(self.condensed, self.responses, self.maps, self.body_motions(state))
         ]
         contacts = zip(self.sides, self.paired, self._tractions(state))
         return DeformedSurfaces(tuple(self._deformed(functionals, *contact) for contact in contacts))

@@ -10,7 +10,6 @@ are searched anew V changes with them, and the stretch makes up for that, too.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +17,7 @@ from scipy.linalg import null_space
 
 from evolvent.contact.newton.contact_equations import TOLERANCE, CondensedSystem
 from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
-from evolvent.contact.nitsche.contact_operator import ContactOperator
+from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Problem, Step
 from evolvent.contact.step.displaced_search import solve_with_displaced_search
 from evolvent.contact.step.step_solution import DeformedSurfaces, Solution
@@ -50,14 +49,14 @@ class PlacedPairs:
     """The pairs of the surfaces as the bodies are placed, with which each step begins; searched once."""
 
     def __init__(self) -> None:
-        self._last: ConservingSystem | None = None
+        self._last: StepSystem | None = None
 
-    def system(self, problem: Problem, steps: StretchedSteps) -> ConservingSystem:
-        """Of a step."""
+    def system(self, problem: Problem, condensed: tuple[CondensedBody, ...], step: Step) -> StepSystem:
+        """One with the pairs of `step`."""
         last = self._last
-        if last is None or last.problem is not problem or last.step.placements is not steps.step.placements:
-            last = self._last = ConservingSystem(problem, steps, None)
-        return last.of(steps)
+        if last is None or last.problem is not problem or last.step.placements is not step.placements:
+            last = self._last = StepSystem(problem, condensed, step)
+        return last
 
 
 def solve_conserving_step(
@@ -70,12 +69,14 @@ def solve_conserving_step(
     Raises InputError for prescribed motions that move; NotConverged, SearchError, PairingNotSettled,
     SmallStrainExceeded; EnergyNotKept where no stretch was found.
     """
-    steps = StretchedSteps(bodies, before, step, length)
+    steps, condensed = StretchedSteps(bodies, before, step, length), tuple(body.condensed for body in bodies)
 
     def system_of(problem: Problem, search_at: SearchPositions) -> StepSystem:
-        return ConservingSystem(problem, steps, search_at) if search_at else pairs.system(problem, steps)
+        if search_at is None:
+            return pairs.system(problem, condensed, step)
+        return StepSystem(problem, condensed, step, search_at)
 
-    _, solution, deformed = solve_with_displaced_search(system_of, problem, before.deformed)
+    _, solution, deformed = solve_with_displaced_search(system_of, problem, before.deformed, steps.solve)
     end = steps.last
     end.balance.certify(end.energy.total, end.time)
     error = step_error(MIDPOINT, end.motions, end.balance.largest)
@@ -83,59 +84,33 @@ def solve_conserving_step(
     return SolvedStep(reached, solution, end.energy, error, steps.solved)
 
 
-class ConservingSystem(StepSystem):
-    """The contact systems of a time step that conserves energy, all with the same pairs."""
-
-    def __init__(self, problem: Problem, steps: StretchedSteps, search_at: SearchPositions) -> None:
-        super().__init__(problem, tuple(body.condensed for body in steps.bodies), steps.step, search_at)
-        self.steps = steps
-
-    def rounded_force(self) -> float:
-        """Contact force [N] that rounding makes of no gap: bodies that are held have no load to compare it with."""
-        stiffness = sum(float(op.weights @ op.stabiliser[:, 0]) for op in self.operators)
-        return float(np.finfo(float).eps) * stiffness * max(np.abs(op.points).max(initial=0.0) for op in self.operators)
-
-    def of(self, steps: StretchedSteps) -> ConservingSystem:
-        """With the same pairs, of another step."""
-        other = copy(self)
-        other.steps, other.step = steps, steps.step
-        return other
-
-    def equilibrium(self, pressed: Bools | None) -> ContactEquilibrium:
-        """Without what else a solution has. pressed: (q,) points that are likely to press. Raises NotConverged."""
-        system = self.system()
-        return ContactEquilibrium(self, system, frictionless(normal_part(system), pressed))
-
-    def solve(
-        self, previous: DeformedSurfaces | None, operators: Sequence[ContactOperator] | None = None
-    ) -> tuple[Solution, DeformedSurfaces]:
-        """The contact at the end of the step, see `StepSystem.solve`; the iterations are those of all systems."""
-        end, iterations = self.steps.kept(self)
-        solution, deformed = end.contact.solution(previous)
-        return replace(solution, iterations=iterations), deformed
-
-
 @dataclass(frozen=True)
 class ContactEquilibrium:
     """Bodies in contact, at the midpoint of a step or at its end."""
 
-    at: ConservingSystem
+    at: StepSystem
     """The bodies."""
     system: CondensedSystem
     """Their contact."""
     state: Equilibrium
     """Its equilibrium."""
 
+    @classmethod
+    def of(cls, at: StepSystem, pressed: Bools | None) -> ContactEquilibrium:
+        """pressed: (q,) points that are likely to press. Raises NotConverged."""
+        system = at.system()
+        return cls(at, system, frictionless(normal_part(system), pressed))
+
     @property
     def forces(self) -> list[Floats]:
         """On the functionals of each body, (k,) [N]."""
-        force = self.at._nodal_forces(self.state).ravel()
+        force = self.at.nodal_forces(self.state).ravel()
         return [-(E.T @ force) for E in self.at.maps]
 
     @property
     def motions(self) -> list[Floats]:
         """Rigid motions of each body (r,)."""
-        return self.at._body_motions(self.state)
+        return self.at.body_motions(self.state)
 
     @property
     def pressed(self) -> Bools:
@@ -150,8 +125,7 @@ class ContactEquilibrium:
 
     def solution(self, previous: DeformedSurfaces | None) -> tuple[Solution, DeformedSurfaces]:
         """See `StepSystem.solve`."""
-        slip = self.at.slip(previous)
-        return self.at._solution(self.system, self.state, slip), self.at._deformed_surfaces(self.state)
+        return self.at.result(self.system, self.state, self.at.slip(previous))
 
 
 @dataclass(frozen=True)
@@ -192,16 +166,21 @@ class StretchedSteps:
         self.last: StepEnd
         self.pressed: tuple[Bools | None, Bools | None] = None, None
 
-    def kept(self, system: ConservingSystem) -> tuple[StepEnd, int]:
-        """The end at which the energy is kept, or nearly, where no stretch does better; and all iterations."""
+    def solve(self, system: StepSystem, previous: DeformedSurfaces | None) -> tuple[Solution, DeformedSurfaces]:
+        """The contact at the end at which the energy is kept, or nearly, where no stretch does better; the iterations
+        are those of all systems.
+
+        system: has the pairs. previous: see `StepSystem.solve`. Raises NotConverged.
+        """
         self.pressed = None, None  # in the pairs of this system
         ends = {0.0: self._ended(system, 1.0, [motion.state.position * 0.0 for motion in self.before.motions])}
         if abs(ends[0.0].excess) > AIM:
             self._stretch(system, ends)
         self.last = min(ends.values(), key=lambda end: abs(end.excess))
-        return self.last, sum(end.iterations for end in ends.values())
+        solution, deformed = self.last.contact.solution(previous)
+        return replace(solution, iterations=sum(end.iterations for end in ends.values())), deformed
 
-    def _stretch(self, system: ConservingSystem, ends: dict[float, StepEnd]) -> None:
+    def _stretch(self, system: StepSystem, ends: dict[float, StepEnd]) -> None:
         """Adds ends at other ln s to that at 0, until the energy is kept, or no s is left."""
         first = ends[0.0]
         moved = [now.state.position - then.state.position for now, then in zip(first.motions, self.before.motions)]
@@ -217,21 +196,22 @@ class StretchedSteps:
         if slope := 2.0 * power / self.length**2 / first.balance.largest:
             try_stretches(excess, first.excess, slope)
 
-    def _ended(self, system: ConservingSystem, stretch: float, unstretched: Sequence[Floats]) -> StepEnd:
+    def _ended(self, system: StepSystem, stretch: float, unstretched: Sequence[Floats]) -> StepEnd:
         """With one stretch."""
         steps = [
             MidpointStep(each.body.system, each.step.state, self.length, stretch, e)
             for each, e in zip(self.between, unstretched)
         ]
         between = [replace(each, step=step) for each, step in zip(self.between, steps)]
-        scale = ROUNDINGS * system.rounded_force() / TOLERANCE
-        middle = system.answering(between, [_loaded(each) for each in between], scale).equilibrium(self.pressed[0])
+        scale = ROUNDINGS * _rounded_force(system) / TOLERANCE
+        loaded = [_loaded(each) for each in between]
+        middle = ContactEquilibrium.of(system.answering(self.step, between, loaded, scale), self.pressed[0])
         states = [each.state(*pushed) for each, *pushed in zip(between, middle.forces, middle.motions)]
         ends = [(each.body, each, state.position) for each, state in zip(self.after, states)]
         held = [HeldResponse(body, z[: body.count], each.factor, each.resultant) for body, each, z in ends]
         motions = [_held(body, z[body.count :]) for body, _, z in ends]
         likely = middle.pressed if self.pressed[1] is None else self.pressed[1]
-        contact = system.answering(held, motions, scale).equilibrium(likely)
+        contact = ContactEquilibrium.of(system.answering(self.step, held, motions, scale), likely)
         self.pressed = middle.pressed, contact.pressed
         self.solved += 2
         damped = sum(step.damped(state) for step, state in zip(steps, states))
@@ -272,6 +252,12 @@ def _loaded(response: MovingResponse) -> RigidMotions:
 def _held(body: MovingBody, motion: Floats) -> RigidMotions:
     """Prescribed, with amplitudes (r,)."""
     return RigidMotions(body.condensed.assembled.motions.shapes, np.full(len(motion), np.nan), motion)
+
+
+def _rounded_force(system: StepSystem) -> float:
+    """Contact force [N] that rounding makes of no gap: bodies that are held have no load to compare it with."""
+    stiffness = sum(float(op.weights @ op.stabiliser[:, 0]) for op in system.operators)
+    return float(np.finfo(float).eps) * stiffness * max(np.abs(op.points).max(initial=0.0) for op in system.operators)
 
 
 def _unresisted(system: StepSystem, bodies: Sequence[MovingBody], moved: Sequence[Floats]) -> list[Floats]:

@@ -1,9 +1,8 @@
 """`python -m evidence.pages.papers.yang_transient --out DIR`: Yang's pair at both speeds, for docs/yang2022.md.
 
-At 1500 and 3000 r/min: seven friction coefficients under a constant torque on the pinion, both gears free; the least
-and the largest coefficient as the paper drives the pair, at a constant speed of the pinion under a torque on the wheel;
-and its start from rest. Runs that an earlier call has ended are read again. `python -m evidence.pages` then writes the
-page.
+At 1500 and 3000 r/min and seven friction coefficients: under a constant torque on the pinion, both gears free, and as
+the paper drives the pair, at a constant speed of the pinion under a torque on the wheel; and its start from rest. Runs
+that an earlier call has ended are read again. `python -m evidence.pages` then writes the page.
 """
 
 from __future__ import annotations
@@ -47,7 +46,7 @@ WAYS = {
     )),
     "wheel": Way("torque on the wheel, the pinion at constant speed, as in the paper; 60 steps, 77 natural modes", (
         "load.on=wheel", "load.torque_Nm=882.353", "transient.drive=constant_speed", "sweep.positions=60",
-        f"contact.friction={[LOW, HIGH]}",
+        f"contact.friction={list(FRICTIONS)}",
     )),
 }  # fmt: skip
 """By the gear that holds the torque."""

@@ -21,6 +21,7 @@ from evolvent.dynamics.results.response import BranchRow, DriveSummary, Response
 from evolvent.dynamics.results.spectrum import SpectrumRow
 from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
 from evolvent.dynamics.results.torque_map import MapRow
+from evolvent.dynamics.results.transient.beginning import StartRow
 from evolvent.dynamics.results.transient.facts import TransientFacts
 from evolvent.dynamics.results.transient.rows import TransientRow, TransientToothRow
 from evolvent.results.archive.error_bar_data import FigureErrors
@@ -81,6 +82,7 @@ FILES = (
     ("transient.toml", "`evolvent transient`: the scene that was computed, with all its defaults"),
     ("transient.csv", "`evolvent transient`: a line per speed, friction coefficient and position of the mesh period"),
     ("transient_teeth.csv", "`evolvent transient`: a line per speed, coefficient and rotation of a tooth"),
+    ("transient_start.csv", "`evolvent transient`, from rest: a line per speed, coefficient and position since then"),
     ("transient.json", "`evolvent transient`: figures of each speed and coefficient"),
     ("pictures/field_of_action.gif", "`evolvent transient`: contact lines with their pressure over a mesh period"),
     ("vibration.csv", "a wear study at an operating speed: the vibration after each block"),
@@ -151,6 +153,7 @@ SECTIONS = (
     ("`operation.json`", OperationFigures, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
     ("`transient.csv`", TransientRow, "Of `evolvent transient`, at ascending rotations."),
     ("`transient_teeth.csv`", TransientToothRow, "Of `evolvent transient`, at ascending rotations of a tooth."),
+    ("`transient_start.csv`", StartRow, "Of `evolvent transient` with `transient.start = \"rest\"`, over time."),
     ("`transient.json`, each entry", TransientFacts, "Of `evolvent transient`."),
     ("`strength.csv`", StrengthRow, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
     ("`root_stress.csv`", RootStressRow, "Of `evolvent strength`, at ascending rotations."),

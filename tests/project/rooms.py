@@ -73,6 +73,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "contact.newton", "contact.transient.time_schemes", "gears.problem", "gears.ring",
         "gears", "gears.contact", "gears.sweep", "dynamics", "dynamics.modes", "dynamics.transient.step_lengths",
     ),
+    "dynamics.transient.starts": (
+        "meshes", "meshes.gears", "contact.transient.time_schemes", "gears", "gears.problem", "gears.sweep",
+        "dynamics.excitation", "dynamics.transient",
+    ),
     "strength.standard": ("meshes", "meshes.gears"),
     "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
     "scene.schema.guesses": (),
@@ -153,7 +157,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "contact.transient.time_schemes", "fem.backend", "fem.parallel", "gears.problem",
         "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema",
         "scene.checking", "results.archive", "results.drawing", "dynamics", "dynamics.transient",
-        "dynamics.transient.step_lengths", "dynamics.results.transient", "dynamics.figures", "run",
+        "dynamics.transient.step_lengths", "dynamics.transient.starts", "dynamics.results.transient",
+        "dynamics.figures", "run",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

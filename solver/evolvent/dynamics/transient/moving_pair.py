@@ -6,7 +6,7 @@ nominal rotation, each in its share.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -83,6 +83,8 @@ class MovingPair:
     """ζ of each mode."""
     mesh_damping: float
     """Force along the line of action per unit rate of the transmission error [N·s/mm; N·s/mm² in 2D]."""
+    damped_apart: bool = False
+    """Whether it acts where the flanks are apart, too."""
 
     @cached_property
     def frequencies(self) -> Floats:
@@ -107,7 +109,7 @@ class MovingPair:
 
     @cached_property
     def system(self) -> LinearSystem:
-        """Of modes and ψ, (m + 1) coordinates."""
+        """Of modes and ψ, (m + 1) coordinates, with flanks in contact."""
         m, ω = self.count, self.frequencies
         mass = np.eye(m + 1)
         spun = [share * gear.spun for share, gear in zip(self.drive.shares, self.gears)]
@@ -115,6 +117,13 @@ class MovingPair:
         mass[m, m] = self.drive.inertia
         damping = np.append(2.0 * self.damping_ratio * ω, self.mesh_damping * self.lever**2)
         return LinearSystem(mass, damping, np.append(ω**2, 0.0))
+
+    @cached_property
+    def system_apart(self) -> LinearSystem:
+        """The same with flanks apart."""
+        if self.damped_apart:
+            return self.system
+        return replace(self.system, damping=np.append(self.system.damping[:-1], 0.0))
 
     def earlier(self, coordinates: Floats, pitches: int) -> Floats:
         """Coordinates (m + 1,) of the same motion so many angular pitches earlier, where other teeth stand as these."""

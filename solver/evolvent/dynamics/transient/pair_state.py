@@ -69,6 +69,11 @@ class SolvedStep:
     """Energy of rest and contact there."""
 
     @property
+    def touches(self) -> bool:
+        """Whether flanks press on each other."""
+        return bool((self.found.traction[:, 0] > 0.0).any())
+
+    @property
     def energy(self) -> float:
         """The largest so far, see `PairState`."""
         return max(self.begin.energy, motion_energy(self.step.pair.system, self.motion) + self.stored)

@@ -7,7 +7,7 @@ second mesh period on a step is the solution of its contact system alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
@@ -151,14 +151,27 @@ class PairTransient:
         """A time step of this length. Raises NotConverged, SearchError."""
         way = part(halvings)
         begin, length = state.for_step(self.pair, self.scheme, way * self.time_step), way * self.time_step
-        step = PairStep(self.pair, TimeStep(self.pair.system, self.scheme, begin.motion, length))
         predicted = float(begin.motion.position[-1] + length * begin.motion.velocity[-1])
-        span = way * self.contacts.step_angle
-        at, found = self.contacts.solved(
-            self._phase(n, reached + way), predicted, lambda at: self._equilibrium(step, at, begin, span)
-        )
-        stored = stored_energy(self.pair, at, found)
-        return SolvedStep(step, begin, halvings, at, found, step.state(at, found), stored)
+        span, phase = way * self.contacts.step_angle, self._phase(n, reached + way)
+
+        def ended(touching: bool) -> SolvedStep:
+            system = self.pair.system if touching else self.pair.system_apart
+            step = PairStep(self.pair, TimeStep(system, self.scheme, begin.motion, length))
+            at, found = self.contacts.solved(phase, predicted, lambda at: self._equilibrium(step, at, begin, span))
+            stored = stored_energy(self.pair, at, found)
+            return SolvedStep(step, begin, halvings, at, found, step.state(at, found), stored)
+
+        return self._damped_in_contact(begin.mesh_force != 0.0, ended)
+
+    def _damped_in_contact(self, guess: bool, ended: Callable[[bool], SolvedStep]) -> SolvedStep:
+        """The end of a step at which the damping of the mesh acts if flanks touch there, and only then; ended: with
+        this damping or without. Where flanks that would touch without are kept apart by the damping alone, they touch
+        without it."""
+        first = ended(guess)
+        if self.pair.damped_apart or first.touches is guess:
+            return first
+        other = ended(not guess)
+        return other if guess or other.touches else first
 
     def _equilibrium(self, step: PairStep, at: SearchedContact, state: PairState, span: float) -> Equilibrium:
         """Of the contact at the end of a step in which the pinion turns by `span` [rad]. Raises NotConverged."""

@@ -29,6 +29,8 @@ class MeshPeriods:
     """The largest of all time steps."""
     lowest_error: float
     """Of transmission, the lowest at the ends of all time steps [mm]."""
+    beginning: tuple[PairMoment, ...] = ()
+    """Positions of the first mesh periods, where they are asked for."""
 
     @property
     def periods(self) -> int:
@@ -60,16 +62,22 @@ class MeshPeriods:
         return StepEnergies.summed(moment.energies for moment in self.moments)
 
 
-def until_steady(transient: PairTransient, start: PairState, most: int, wanted: float) -> MeshPeriods:
+def until_steady(
+    transient: PairTransient, start: PairState, most: int, wanted: float, first: int = 0
+) -> MeshPeriods:
     """Mesh periods until the transmission error changes by at most `wanted` of its peak-to-peak value from one to the
-    next, `most` at most. Raises NotConverged, SearchError, Unbalanced."""
+    next, `most` at most. first: so many mesh periods are reported with all their positions. Raises NotConverged,
+    SearchError, Unbalanced."""
     count, errors, changes = transient.contacts.positions, [], []
     moments: list[PairMoment] = []
+    beginning: list[PairMoment] = []
     residuals, lowest = NOTHING_KNOWN, np.inf
     for moment in transient.run(start, most):
         moments.append(moment)
         residuals, lowest = residuals.larger(moment.residuals), min(lowest, moment.steps.lowest_error)
         errors.append(moment.result.transmission_error)
+        if len(errors) <= first * count:
+            beginning.append(moment)
         if len(moments) < count:
             continue
         last, before = np.array(errors[-count:]), np.array(errors[-2 * count : -count])
@@ -79,4 +87,6 @@ def until_steady(transient: PairTransient, start: PairState, most: int, wanted: 
             changes.append(float(np.abs(last - before).max() / max(np.ptp(last), 1e-300)))
             if changes[-1] <= wanted:
                 break
-    return MeshPeriods(tuple(period), np.array(errors), np.array(changes), wanted, residuals, lowest)
+    return MeshPeriods(
+        tuple(period), np.array(errors), np.array(changes), wanted, residuals, lowest, tuple(beginning)
+    )

@@ -6,9 +6,10 @@ Momentum. With the forces p that the nodal sums give on modes and ψ, the state 
 
 Energy. That of the motion has an exact balance in time steps under any forces, with the work of the contact forces by
 the trapezoidal rule (contact/transient/time_schemes/scheme_energy.py), also of a step of another length than the one
-before (step_lengths/changed_length.py). There is no exact one between this work and what the flanks store: other nodes
-and points are in contact at the end of a step than at its begin, the nominal rotation moves them on in between, and the
-normals are those before deflection. Over a step
+before (step_lengths/changed_length.py), and of one at whose end alone, or at whose begin alone, the damping of the mesh
+acts, with the work of each end's own damping. There is no exact one between this work and what the flanks store: other
+nodes and points are in contact at the end of a step than at its begin, the nominal rotation moves them on in between,
+and the normals are those before deflection. Over a step
 
     rotation = given + friction + stored + (what is left)
 
@@ -105,6 +106,8 @@ class StepEnd:
     """(m + 1,) at the begin of the step."""
     forces: Floats
     """p (m + 1,) at its end."""
+    damping: Floats
+    """D v (m + 1,) at its end."""
     powers: tuple[float, float]
     """Of rotation and friction at its end, per radian of the pinion [N·mm; N in 2D]."""
     motion: float
@@ -122,9 +125,10 @@ class StepEnd:
 
     def earlier(self, pair: MovingPair) -> StepEnd:
         """The same a pitch earlier, where the other teeth stand as these do. Energies are the same."""
-        return replace(
-            self, acceleration=pair.earlier(self.acceleration, 1), forces=pair.earlier(self.forces, 1)
+        acceleration, forces, damping = (
+            pair.earlier(each, 1) for each in (self.acceleration, self.forces, self.damping)
         )
+        return replace(self, acceleration=acceleration, forces=forces, damping=damping)
 
 
 @dataclass(frozen=True)
@@ -150,7 +154,8 @@ class StepBalance:
         pair = self.step.pair
         powers = self.sums.torques[0] - self.sums.torques[1] / pair.model.pair.ratio, self.result.friction_loss
         begin = self.step.step.state.acceleration
-        return StepEnd(begin, self._forces, powers, self._energy.of(self.state, begin), self.stored)
+        damping = self.step.step.system.damping * self.state.velocity
+        return StepEnd(begin, self._forces, damping, powers, self._energy.of(self.state, begin), self.stored)
 
     def energies(self, before: StepEnd | None) -> StepEnergies:
         """Of the step. before: None where there is no step before."""
@@ -160,11 +165,11 @@ class StepBalance:
             return StepEnergies(passed, *([UNKNOWN] * 6))
         begin, end = self.step.step.state, self.end
         moved = self.state.position - begin.position
-        mean = 0.5 * (before.forces + end.forces)
+        mean, damping = 0.5 * (before.forces + end.forces), 0.5 * (before.damping + end.damping)
         given = float(mean @ moved) - drive.torque * float(moved[-1])
         rotation, friction = (0.5 * self.span * (one + other) for one, other in zip(before.powers, end.powers))
         return StepEnergies(
-            passed, rotation, given, friction, end.stored - before.stored, self._energy.damped(begin, self.state),
+            passed, rotation, given, friction, end.stored - before.stored, float(damping @ moved),
             self._energy.taken(before.acceleration, self.state) - before.converted,
         )  # fmt: skip
 

@@ -203,6 +203,11 @@ class TransientSection(SceneSection):
         "turns at constant speed, as behind a large flywheel",
         '"free" or "constant_speed"', default="free",
     )  # fmt: skip
+    start: Literal["statics", "rest"] = key(
+        "how the motion begins: under load at speed, from statics; or with a blow, one gear at its speed at once and "
+        "the other one at rest, the flanks just touching. From rest the first two mesh periods are reported, too",
+        '"statics" or "rest"', default="statics",
+    )  # fmt: skip
     mesh_periods: int = key(
         "mesh periods that are computed at most, until the motion repeats", "a whole number from 2 to 10000",
         "raise it where a sentence says that a motion does not repeat yet", default=60, ge=2, le=10_000,

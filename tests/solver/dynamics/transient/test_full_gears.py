@@ -27,7 +27,7 @@ from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_step import SearchedContact
 from evolvent.dynamics.transient.pair_transient import PairTransient
-from evolvent.dynamics.transient.quasi_static_start import BEFORE, quasi_static_starts
+from evolvent.dynamics.transient.starts.quasi_static_start import BEFORE, quasi_static_starts
 from evolvent.fem.body import Body
 from evolvent.fem.modes.mass_matrix import mass_matrix
 from evolvent.gears.condensed_gear import GearBody, matching_cuts
@@ -84,12 +84,12 @@ def condensed() -> GearModel:
 
 
 def transient(per_harmonic: int) -> PairTransient:
-    """Both gears are free; modes are not damped."""
+    """Both gears are free; modes are not damped, the mesh is, with flanks apart, too."""
     model = condensed()
     pinion, wheel = (gear_modes(body, ModeChoice(0.0, per_harmonic)) for body in model.bodies)
     torques = model.load.torque, model.load.torque * model.pair.ratio
     drive = Drive.free(model.pair.ratio, (pinion.moment_of_inertia, wheel.moment_of_inertia), torques)
-    pair = MovingPair(model, (pinion, wheel), drive, 0.0, MESH_DAMPING)
+    pair = MovingPair(model, (pinion, wheel), drive, 0.0, MESH_DAMPING, damped_apart=True)
     return PairTransient(pair, 0.0, 2.0 * np.pi * RPM / 60.0, SCHEME, KeptContacts(pair, POSITIONS, 1))
 
 

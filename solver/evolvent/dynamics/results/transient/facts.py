@@ -6,9 +6,11 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from itertools import zip_longest
 
 import numpy as np
 
+from evolvent.dynamics.results.transient.beginning import StartErrors
 from evolvent.dynamics.results.transient.cases import UM, CasePressures
 from evolvent.dynamics.results.transient.compared import FINER
 from evolvent.dynamics.results.transient.curves import largest
@@ -78,6 +80,10 @@ class TransientFacts:
     """
     dynamic_factor_error: float
     """Its estimated error by mesh, modes and time steps; null likewise."""
+    start_dynamic_factor: float | None
+    """The same of the first two mesh periods from rest; null for a motion that begins with statics."""
+    start_dynamic_factor_error: float | None
+    """Its estimated error, at the positions; null likewise."""
     separated: float
     """Share of the positions at which nothing touches."""
     max_pressure_MPa: float
@@ -111,13 +117,14 @@ class TransientFacts:
 
 
 def transient_facts(
-    model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors], frequencies: Floats, mass: float
-) -> list[TransientFacts]:
-    """Of all cases with their error bars. frequencies: of the modes [rad/s]; mass: along the line of action
-    [t; t/mm in 2D]."""
+    model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors], starts: Sequence[StartErrors],
+    frequencies: Floats, mass: float,
+) -> list[TransientFacts]:  # fmt: skip
+    """Of all cases with their error bars. starts: error bars of motions from rest, empty without. frequencies: of the
+    modes [rad/s]; mass: along the line of action [t; t/mm in 2D]."""
     width, facts = model.width_factor, []
     lowest = float(frequencies.min() / (2.0 * np.pi)) if len(frequencies) else None
-    for each, bars in zip(pressures, errors):
+    for each, bars, start in zip_longest(pressures, errors, starts):
         case, found, (moving, still) = each.case, each.case.found, each.peaks()
         load = case.load
         motion = np.array([result.transmission_error for result in case.results])
@@ -134,6 +141,8 @@ def transient_facts(
             UM * float(np.ptp(motion)), bars.peak_to_peak_um,
             UM * float(np.ptp([still.transmission_error for still in case.static])), bars.static_peak_to_peak_um,
             steps.largest_force / load, bars.dynamic_factor,
+            max((moment.steps.largest_force / load for moment in found.beginning), default=None),
+            start.largest_force / load if start else None,
             float(np.mean([len(result.contact.tooth) == 0 for result in case.results])), largest(moving),
             bars.max_pressure, largest(still), bars.static_max_pressure, worst.momentum, worst.reaction, worst.moment,
             worst.motion, worst.exchange, abs(energies.left) / passed, energies.friction / passed,

@@ -16,7 +16,8 @@ from evolvent.dynamics.transient.driven_pair import LEAST, driven_pair, loaded_a
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_transient import PairState, PairTransient
-from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.starts.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.starts.start_from_rest import start_from_rest
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
 from evolvent.dynamics.transient.step_lengths.divided_steps import UNDIVIDED, DividedSteps
 from evolvent.fem.parallel.machine import machine_megabytes
@@ -37,6 +38,8 @@ from evolvent_meshes.errors import EvolventError
 MODES, STEPS = "natural modes", "mesh periods"
 KEPT = 0.35
 """Of the machine's memory: what the contacts of positions may take, beside the gears."""
+FIRST = 2
+"""Mesh periods from rest that are reported."""
 Motion = MeshPeriods | None
 """None where it failed."""
 Found = Mapping[int, MeshPeriods | str]
@@ -59,6 +62,8 @@ class PairCases:
 
     scene: Scene
     """With a section [transient]."""
+    problem: GearProblem
+    """Of the scene."""
     pair: MovingPair
     """On one kind of meshes."""
     static: Statics
@@ -88,7 +93,7 @@ class PairCases:
         modes = together(comm, lambda: resolved_modes(problem, model, density, sampled, count, on.least))
         constant_speed = section.drive == "constant_speed"
         pair = driven_pair(model, modes, settings, static[0], section.mode_damping_ratio, constant_speed)
-        return PairCases(scene, pair, static, settings, comm, progress)
+        return PairCases(scene, problem, pair, static, settings, comm, progress)
 
     @property
     def tasks(self) -> list[tuple[float, int]]:
@@ -150,10 +155,10 @@ class PairCases:
             if not numbers:
                 return found
             self.progress.stage(stage, len(numbers))
-            starts = quasi_static_starts(self.pair, contacts.step_angle, list(self.scene.contact.friction))
+            start = self._starts(contacts)
             for number in numbers:
                 transient = self._transient(number, contacts)
-                motion = solved(number, transient, starts[self.tasks[number][1]].at(transient.time_step))
+                motion = solved(number, transient, start(number, transient))
                 if motion is not None:
                     kept.write(number, motion)
                     found[number] = motion
@@ -162,6 +167,17 @@ class PairCases:
 
         gathered = self.comm.gather(together(self.comm, own)) or []
         return {number: found for part in (known, *gathered) for number, found in part.items()}
+
+    def _starts(self, contacts: KeptContacts) -> Callable[[int, PairTransient], PairState]:
+        """Makes the state in which a case begins. Raises NotConverged, SearchError."""
+        if self._from_rest:
+            return lambda _, case: start_from_rest(case.pair, self.problem, case.speed, case.friction)
+        statics = quasi_static_starts(self.pair, contacts.step_angle, list(self.scene.contact.friction))
+        return lambda number, case: statics[self.tasks[number][1]].at(case.time_step)
+
+    @property
+    def _from_rest(self) -> bool:
+        return transient_section(self.scene).start == "rest"
 
     def _transient(self, number: int, contacts: KeptContacts) -> PairTransient:
         speed, index = self.tasks[number]
@@ -181,7 +197,8 @@ class PairCases:
     def _until_steady(self, transient: PairTransient, start: PairState) -> MeshPeriods:
         """Raises NotConverged, SearchError, Unbalanced."""
         section = transient_section(self.scene)
-        return until_steady(transient, start, section.mesh_periods, section.steady_change)
+        first = FIRST if self._from_rest else 0
+        return until_steady(transient, start, section.mesh_periods, section.steady_change, first)
 
     def _check(self, found: MeshPeriods, transient: PairTransient) -> None:
         """Raises BackFlanks, Unbalanced."""

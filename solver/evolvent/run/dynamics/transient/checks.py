@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from evolvent.dynamics.results.transient.beginning import TRANSIENT_START
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.run_folder import RunFolder
@@ -14,8 +15,12 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.errors import InputError
 
-PICTURE, ANIMATION, SCENE = "transient.png", "field_of_action.gif", "transient.toml"
-WRITTEN = SCENE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS, f"pictures/{PICTURE}", f"pictures/{ANIMATION}"
+PICTURE, START_PICTURE, ANIMATION = "transient.png", "transient_start.png", "field_of_action.gif"
+SCENE = "transient.toml"
+WRITTEN = (
+    SCENE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_START, TRANSIENT_FACTS,
+    *(f"pictures/{name}" for name in (PICTURE, START_PICTURE, ANIMATION)),
+)  # fmt: skip
 
 
 def transient_section(scene: Scene) -> TransientSection:

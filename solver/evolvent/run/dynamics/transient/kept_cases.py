@@ -31,6 +31,7 @@ from evolvent_meshes.gears.pair import GearPair
 KEPT_STATIC, KEPT_CASES = "results/transient_static.npz", "results/transient_*.npz"
 COARSE, FINER_STEPS = "_coarse", "_finer"
 """Kinds of cases: those of the companion, in the time steps of the scene and in shorter ones."""
+BEGINNING = "beginning/"
 Statics = list[tuple[PositionResult, ...]]
 """Of each friction coefficient, its positions."""
 T = TypeVar("T")
@@ -61,7 +62,7 @@ class KeptCases:
 
     def write_static(self, static: Statics) -> None:
         """Keeps the positions without inertia. Raises WriteError, FolderError."""
-        arrays: dict[str, Any] = {"count": len(static), "positions": len(static[0])}
+        arrays: dict[str, Any] = {"count": len(static)}
         for i, results in enumerate(static):
             arrays |= _positions_arrays(results, f"{i}/")
         self._write(self._name("static"), arrays)
@@ -73,14 +74,9 @@ class KeptCases:
 
     def write(self, number: int, found: MeshPeriods) -> None:
         """Keeps a case. Raises WriteError, FolderError."""
-        moments = found.moments
-        arrays = _positions_arrays([moment.result for moment in moments], "") | {
-            "positions": len(moments), "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
+        arrays = _moments_arrays(found.moments, "") | _moments_arrays(found.beginning, BEGINNING) | {
+            "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
             "residuals": astuple(found.residuals), "lowest_error": found.lowest_error,
-            "moments": [(moment.time, moment.mesh_force, moment.rate) for moment in moments],
-            "balances": [astuple(moment.residuals) for moment in moments],
-            "energies": [astuple(moment.energies) for moment in moments],
-            "steps": [astuple(moment.steps) for moment in moments],
         }  # fmt: skip
         self._write(self._name(f"{number:04d}"), arrays)
 
@@ -91,18 +87,20 @@ class KeptCases:
         return [tuple(self._positions(arrays, f"{i}/")) for i in range(int(arrays["count"]))]
 
     def _periods(self, arrays: dict[str, Any]) -> MeshPeriods:
-        columns = (arrays[name].tolist() for name in ("moments", "balances", "energies", "steps"))
-        moments = [
-            PairMoment(time, result, force, rate, Residuals(*balances), StepEnergies(*energies), _steps(*steps))
-            for result, (time, force, rate), balances, energies, steps in zip(self._positions(arrays, ""), *columns)
-        ]
         return MeshPeriods(
-            tuple(moments), arrays["errors"], arrays["changes"], float(arrays["wanted"]),
-            Residuals(*arrays["residuals"].tolist()), float(arrays["lowest_error"]),
+            self._moments(arrays, ""), arrays["errors"], arrays["changes"], float(arrays["wanted"]),
+            Residuals(*arrays["residuals"].tolist()), float(arrays["lowest_error"]), self._moments(arrays, BEGINNING),
         )  # fmt: skip
 
+    def _moments(self, arrays: dict[str, Any], start: str) -> tuple[PairMoment, ...]:
+        columns = (arrays[start + name].tolist() for name in ("moments", "balances", "energies", "steps"))
+        return tuple(
+            PairMoment(time, result, force, rate, Residuals(*balances), StepEnergies(*energies), _steps(*steps))
+            for result, (time, force, rate), balances, energies, steps in zip(self._positions(arrays, start), *columns)
+        )
+
     def _positions(self, arrays: dict[str, Any], start: str) -> list[PositionResult]:
-        return [archived_result(arrays, f"{start}{k}/", self.pair) for k in range(int(arrays["positions"]))]
+        return [archived_result(arrays, f"{start}{k}/", self.pair) for k in range(int(arrays[f"{start}positions"]))]
 
     def _read(self, path: Path, made: Callable[[dict[str, Any]], T]) -> T:
         arrays = read_arrays(path)
@@ -128,6 +126,18 @@ def _steps(accepted: float, rejected: float, *others: float) -> StepsTaken:
     return StepsTaken(int(accepted), int(rejected), *others)
 
 
+def _moments_arrays(moments: Sequence[PairMoment], start: str) -> dict[str, Any]:
+    columns = {
+        "moments": [(moment.time, moment.mesh_force, moment.rate) for moment in moments],
+        "balances": [astuple(moment.residuals) for moment in moments],
+        "energies": [astuple(moment.energies) for moment in moments],
+        "steps": [astuple(moment.steps) for moment in moments],
+    }
+    results = _positions_arrays([moment.result for moment in moments], start)
+    return results | {f"{start}{name}": np.asarray(column) for name, column in columns.items()}
+
+
 def _positions_arrays(results: Sequence[PositionResult], start: str) -> dict[str, Any]:
     named = [(f"{start}{k}/", result_arrays(result)) for k, result in enumerate(results)]
-    return {f"{place}{name}": np.asarray(value) for place, arrays in named for name, value in arrays.items()}
+    positions = {f"{place}{name}": np.asarray(value) for place, arrays in named for name, value in arrays.items()}
+    return positions | {f"{start}positions": np.asarray(len(results))}

@@ -10,6 +10,7 @@ from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.results.archive.error_bar_data import plus_minus
 
 FIGURES = (
+    ("start_dynamic_factor", "from rest up to a mesh force over load of", "", 2),
     ("dynamic_factor", "largest mesh force over load", "", 2),
     ("peak_to_peak_um", "transmission error", "µm peak to peak", 2),
     ("max_pressure_MPa", "largest pressure", "MPa", 0),

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
+from evolvent.dynamics.results.transient.beginning import beginnings, start_rows, write_start
 from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures, elements_across
 from evolvent.dynamics.results.transient.errors import MovingCompanion, case_errors
 from evolvent.dynamics.results.transient.facts import sentences, transient_facts, write_facts
@@ -23,6 +24,7 @@ from evolvent.run.dynamics.transient.checks import (
     ANIMATION,
     PICTURE,
     SCENE,
+    START_PICTURE,
     WRITTEN,
     prepared_folder,
     transient_section,
@@ -86,12 +88,20 @@ def _written(
     pressures = case_pressures(pair.model, cases)
     errors = case_errors(pair.model, pressures, companion)
     rows, teeth = list(transient_rows(pair.model, pressures, errors)), list(tooth_rows(pair.model, pressures, errors))
-    facts = transient_facts(pair.model, pressures, errors, pair.frequencies, pair.drive.inertia / pair.lever**2)
+    begun = beginnings(pair.model, pressures, companion)
+    started = list(start_rows(pair.model, pressures, begun))
+    mass = pair.drive.inertia / pair.lever**2
+    facts = transient_facts(pair.model, pressures, errors, [bars for _, bars in begun], pair.frequencies, mass)
 
     def drawn() -> bytes:
         from evolvent.dynamics.figures.transient import transient_picture  # matplotlib takes a second to import
 
         return transient_picture(scene.title, rows, teeth, facts)
+
+    def start_drawn() -> bytes:
+        from evolvent.dynamics.figures.transient_start import start_picture
+
+        return start_picture(scene.title, started)
 
     def animated() -> bytes:
         from evolvent.dynamics.figures.field_of_action import FieldOfAction
@@ -104,8 +114,11 @@ def _written(
     folder.write_text(SCENE, scene.resolved_toml())
     write_rows(folder, rows, teeth)
     write_facts(folder, facts)
+    if started:
+        write_start(folder, started)
     output = wanted_output(scene)
     pictures = [Picture(PICTURE, drawn)] if output.pictures else []
+    pictures += [Picture(START_PICTURE, start_drawn)] if output.pictures and started else []
     pictures += [Picture(ANIMATION, animated)] if output.animation else []
     tolerance = transient_section(scene).tolerance
     coarse = coarse_contact(elements_across(pair.model, pressures))

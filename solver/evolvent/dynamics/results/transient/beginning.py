@@ -1,0 +1,178 @@
+"""The first mesh periods of a motion from rest: rows over time, with error bars as those of the last mesh period."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from evolvent.dynamics.results.curves import VARYING_FACTOR
+from evolvent.dynamics.results.transient.cases import UM, CasePressures
+from evolvent.dynamics.results.transient.compared import Compared, each_apart
+from evolvent.dynamics.results.transient.curves import MotionCurves
+from evolvent.dynamics.results.transient.errors import MovingCompanion
+from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.gears.gear_model import GearModel
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.error_bars.estimation import LOAD_FACTOR, STIFFNESS_FACTOR, Curve
+from evolvent.results.tables.tables import csv_text
+from evolvent_meshes.arrays import Floats
+
+TRANSIENT_START = "transient_start.csv"
+
+
+@dataclass(frozen=True)
+class StartRow:
+    """A line of transient_start.csv: a position of the first two mesh periods from rest."""
+
+    speed_rpm: float
+    """Of the pinion."""
+    friction: float
+    """μ."""
+    time_s: float
+    """Since the flanks touched."""
+    pinion_angle_deg: float
+    """Nominal rotation of the pinion since then; it begins at 0 of transient.csv."""
+    transmission_error_um: float
+    """r_b1 φ_1 − r_b2 φ_2."""
+    transmission_error_um_error: float
+    """Its estimated error by mesh, modes and time steps; NaN where there is no coarse companion (`output.error_bars`).
+    """
+    static_transmission_error_um: float
+    """The same without inertia."""
+    mesh_force_N: float
+    """Along the line of action in the transverse section."""
+    mesh_force_N_error: float
+    """Its estimated error, likewise."""
+    load_N: float
+    """Of which the motion is at rest in the mean, see transient.json."""
+    max_pressure_MPa: float
+    """Largest fitted peak pressure between the tip-edge zones; NaN where all contact lies in these, or nothing
+    touches."""
+    max_pressure_MPa_error: float
+    """Its estimated error, likewise."""
+    static_max_pressure_MPa: float
+    """The same without inertia."""
+
+
+@dataclass(frozen=True, eq=False)
+class StartErrors:
+    """Error bars of the first mesh periods of a case, n positions; NaN where they are not known."""
+
+    transmission_error_um: Floats
+    """(n,)."""
+    mesh_force: Floats
+    """(n,) [N; N/mm in 2D]."""
+    pressure: Floats
+    """(n,) [MPa]."""
+    largest_force: float
+    """Of the largest mesh force [N; N/mm in 2D]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Beginning:
+    """The first mesh periods of a motion, n positions over the rotation of the pinion since the start."""
+
+    angle: Floats
+    """(n,) [rad]."""
+    found: MeshPeriods
+    """The motion."""
+    curves: MotionCurves
+    """Of its positions."""
+
+    @staticmethod
+    def of(model: GearModel, found: MeshPeriods, inner: tuple[float, float]) -> Beginning:
+        """inner: roll distances [mm] between which pressures are looked at."""
+        pitch, n = 2.0 * np.pi / model.pair.pinion.z, len(found.moments)
+        angle = pitch / n * np.arange(1, len(found.beginning) + 1)
+        return Beginning(angle, found, MotionCurves.of(model, [each.result for each in found.beginning], inner))
+
+    @property
+    def transmission_error(self) -> Curve:
+        """[mm]."""
+        return self._since(self.curves.transmission_error)
+
+    @property
+    def mesh_force(self) -> Curve:
+        """[N; N/mm in 2D]."""
+        return Curve(self.angle, np.array([moment.mesh_force for moment in self.found.beginning]))
+
+    @property
+    def pressure(self) -> Curve:
+        """Fitted [MPa]."""
+        return self._since(self.curves.fitted.positions)
+
+    @property
+    def hertz(self) -> Curve:
+        """Of Hertz for the line loads [MPa]."""
+        return self._since(self.curves.hertz.positions)
+
+    @property
+    def line_loads(self) -> Curve:
+        """Pressures that depend on the line loads alone [MPa]."""
+        return self._since(self.curves.line_loads.positions)
+
+    def _since(self, curve: Curve) -> Curve:
+        """Over the rotation since the start, where teeth are numbered anew after each pitch."""
+        return Curve(self.angle, curve.values)
+
+
+def start_errors(own: Beginning, order: int, motions: tuple[Beginning, Beginning] | None) -> StartErrors:
+    """order: of the cells. motions: of the companion, in the time steps of the case and in shorter ones; None where
+    there are none."""
+    if motions is None:
+        nothing = np.full(len(own.angle), np.nan)
+        return StartErrors(nothing, nothing, nothing, float("nan"))
+    every = (own, *motions)
+    error = Compared(STIFFNESS_FACTOR[order], *(each.transmission_error for each in every))
+    force = Compared(VARYING_FACTOR[order], *(each.mesh_force for each in every))
+    peaks = Compared(LOAD_FACTOR[order], *(each.line_loads for each in every))
+    pressure = each_apart(own.pressure, own.hertz) + peaks.of_each()
+    return StartErrors(UM * error.of_each(), force.of_each(), pressure, force.of_figure(np.max))
+
+
+def beginnings(
+    model: GearModel, pressures: Sequence[CasePressures], companion: MovingCompanion | None
+) -> list[tuple[Beginning, StartErrors]]:
+    """Of all cases, numbered as they come, with their error bars; none where motions do not begin at rest."""
+    found = []
+    for number, each in enumerate(pressures):
+        if not each.case.found.beginning:
+            return []
+        inner = each.moving.inner_path
+        own = Beginning.of(model, each.case.found, inner)
+        motions = None if companion is None else _both(companion, number, inner)
+        found.append((own, start_errors(own, model.bodies[0].mesh.order, motions)))
+    return found
+
+
+def _both(companion: MovingCompanion, number: int, inner: tuple[float, float]) -> tuple[Beginning, Beginning] | None:
+    """None where one of them was not found."""
+    same, finer = companion.same[number], companion.finer[number]
+    if isinstance(same, str) or isinstance(finer, str):
+        return None
+    return Beginning.of(companion.model, same, inner), Beginning.of(companion.model, finer, inner)
+
+
+def start_rows(
+    model: GearModel, pressures: Sequence[CasePressures], begun: Sequence[tuple[Beginning, StartErrors]]
+) -> Iterator[StartRow]:
+    """Of all cases, over time."""
+    width = model.width_factor
+    for each, (own, bars) in zip(pressures, begun):
+        case, (_, calm) = each.case, each.peaks()
+        values = own.pressure.values, bars.transmission_error_um, bars.mesh_force, bars.pressure
+        for k, (moment, peak, of_error, of_force, of_peak) in enumerate(zip(case.found.beginning, *values), 1):
+            still = k % len(case.static)
+            yield StartRow(
+                case.speed, case.friction, moment.time, float(np.degrees(own.angle[k - 1])),
+                UM * moment.result.transmission_error, float(of_error),
+                UM * case.static[still].transmission_error, width * moment.mesh_force, width * float(of_force),
+                width * case.load, float(peak), float(of_peak), float(calm[still]),
+            )  # fmt: skip
+
+
+def write_start(folder: RunFolder, rows: Sequence[StartRow]) -> None:
+    """transient_start.csv. Raises WriteError."""
+    folder.write_text(TRANSIENT_START, csv_text([asdict(row) for row in rows]))

@@ -1,0 +1,1 @@
+"""The states in which a transient begins."""

@@ -1,0 +1,40 @@
+"""The state in which a transient begins with a blow: one gear at its speed at once, the other one at rest.
+
+The flanks just touch, without load. The nominal rotation has both gears turn; a gear at rest lags behind it, by the
+speed of the line of action: r_b1 φ_1 − r_b2 φ_2 grows at r_b1 ω_1. The bodies do not vibrate, and all torques act from
+then on.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.contact.transient.time_schemes.time_scheme import MotionState
+from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.transient.moving_pair import MovingPair
+from evolvent.dynamics.transient.pair_state import PairState
+from evolvent.gears.kinematics import Stand
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.sweep.friction_history import FrictionHistory
+
+
+def start_from_rest(pair: MovingPair, problem: GearProblem, speed: float, friction: float) -> PairState:
+    """The state at pinion rotation 0.
+
+    problem: of the pair. speed: of the pinion [rad/s]. friction: μ.
+    """
+    flanks = RigidFlanks(problem.pair, problem.flanks)
+    (touching,) = unloaded_error(flanks, np.zeros(1), problem.torque_on)
+    rest = np.zeros(pair.count)
+    position = np.append(rest, touching / pair.lever)
+    velocity = np.append(rest, speed * pair.base_radii[0] / pair.lever)
+    stand = Stand(pair.model.pair, 0.0, pair.drive.rotations(float(position[-1])))
+    history = _untouched(stand, pair.model.bodies[0].d) if friction else None
+    return PairState(MotionState(position, velocity, np.zeros(len(position))), history, rest)
+
+
+def _untouched(stand: Stand, d: int) -> FrictionHistory:
+    """Of flanks on which nothing has pressed. d: of space."""
+    rows, nothing = np.zeros((0, 2), dtype=int), np.zeros((0, d))
+    return FrictionHistory(stand, (rows, rows), (nothing, nothing), nothing)
+

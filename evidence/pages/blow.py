@@ -1,4 +1,4 @@
-"""The table of docs/transient.md beside CalculiX."""
+"""The table of docs/transient_method.md beside CalculiX."""
 
 from __future__ import annotations
 

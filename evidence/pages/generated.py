@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from evidence import mutations
-from evidence.benchmarks.accuracy import transient_bars
+from evidence.benchmarks.accuracy import transient_bar_costs, transient_bars
 from evidence.checkout import ROOT
 from evidence.pages import blow, outputs, promises, readme, tutorial
 from evidence.pages.papers import he, he_transient, yang, yang_fatigue, yang_transient, zhang
@@ -38,7 +38,8 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         },
         docs / "zhang2023.md": {"points": zhang.points(docs), "differences": zhang.differences(docs)},
         docs / "fatigue.md": {"friction": yang_fatigue.friction_table(docs), "fitted": yang_fatigue.fitted_table(docs)},
-        docs / "transient.md": {"calculix": blow.table(docs), "bars": transient_bars.said(docs)},
+        docs / "transient.md": {"bars": transient_bars.said(docs), "costs": transient_bar_costs.said(docs)},
+        docs / "transient_method.md": {"calculix": blow.table(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "studies.md": {

@@ -1,6 +1,7 @@
 """Error bars of the transient contact of He's pair against true errors: `python -m
 evidence.benchmarks.accuracy.transient_bars --out DIR`; with the same folder again, motions are not computed again.
-`python -m evidence.pages` then writes docs/transient.md.
+What the bars cost is measured after that (`transient_bar_costs`). `python -m evidence.pages` then writes
+docs/transient.md.
 
 Level quick with 20 positions a mesh period, against level standard with 160 and four natural modes of each harmonic.
 The speeds lie at superharmonic resonances, beside the resonance and at it, where with little damping the teeth part and
@@ -18,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from evidence.benchmarks.accuracy import transient_bar_costs
 from evidence.checkout import DEMOS, DOCS
 from evidence.tables import markdown, read_csv, read_rows, write_rows
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
@@ -153,13 +155,16 @@ def said(docs: Path) -> str:
     return (
         f"The bars hold the true error of {figures} figures in `transient.json`, and of {inside(parts)} values in the "
         f"tables; wanted 90 %. The exception are forces at single positions at the resonance, {inside(forces)}: there "
-        "they chatter in steps of a quarter, too.\n"
+        "they chatter in steps of a quarter, too."
     )
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
-    found = list(measure(parser.parse_args().out))
+    runs = parser.parse_args().out
+    found = list(measure(runs))
     write_rows(DOCS / KEPT, found)
     print(table(found))
+    transient_bar_costs.keep(runs / "costs")
+    print(transient_bar_costs.said(DOCS))

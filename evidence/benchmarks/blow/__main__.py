@@ -1,5 +1,5 @@
 """`python -m evidence.benchmarks.blow`: a block flies against a block, by Evolvent and by CalculiX, for
-docs/transient.md.
+docs/transient_method.md.
 
 Keeps its tables in docs/benchmark/, its picture in docs/pictures/benchmark/; `python -m evidence.pages` then writes the
 page. Takes some minutes. Without CalculiX (`packages/peers build/peers` installs it) nothing is kept.

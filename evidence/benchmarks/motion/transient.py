@@ -28,7 +28,7 @@ from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 
 STEP_BAR, PAIR_BAR = 1.5, 900.0
-"""Seconds of a step over those of a position; [s] until a motion repeats: docs/transient.md."""
+"""Seconds of a step over those of a position; [s] until a motion repeats: docs/transient_method.md."""
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ With F̂ all forces in the mean axes (fem/modes/mean_axes.py), modes W of freque
 
     P u = P R δ + Φ_P q + (Ψ K⁻¹ Ψᵀ − Φ_P Ω⁻² Φ_Pᵀ) f + ... ,    Ψ = P − (P R) m⁻¹ RᵀM ,    Φ_P = Ψ W .
 
-docs/transient.md has the equations.
+docs/transient_method.md has the equations.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Contact of bodies with inertia over time: `Transient`, step by step.
 
-docs/transient.md has the method.
+docs/transient_method.md has the method.
 """
 
 from __future__ import annotations

@@ -12,11 +12,13 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.dynamics.transient.kept_cases import KEPT_CASES, KEPT_STATIC
 from evolvent.run.folder_checks import require_unfinished
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.dynamics import TransientSection
+from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent_meshes.errors import InputError
 
 PICTURE, START_PICTURE, ANIMATION = "transient.png", "transient_start.png", "field_of_action.gif"
 SCENE = "transient.toml"
+UNUSED = "series_stiffness_N_per_um", "ground_damping_ratio", "mesh"
+"""Keys of [dynamics]."""
 WRITTEN = (
     SCENE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_START, TRANSIENT_FACTS,
     *(f"pictures/{name}" for name in (PICTURE, START_PICTURE, ANIMATION)),
@@ -31,6 +33,16 @@ def transient_section(scene: Scene) -> TransientSection:
             "transient.speeds_rpm=[1500], or write [transient] into the scene"
         )
     return scene.transient
+
+
+def unused_keys(section: DynamicsSection) -> list[str]:
+    """A sentence where keys of [dynamics] say what a transient does not have."""
+    standard = DynamicsSection()
+    names = [name for name in UNUSED if getattr(section, name) != getattr(standard, name)]
+    if not names:
+        return []
+    keys = ", ".join(f"dynamics.{name}" for name in names)
+    return [f"{keys}: not in a transient, whose gears stand on rigid shafts and whose flanks are in contact themselves"]
 
 
 def prepared_folder(out: Path, resume: bool, overwrite: bool) -> list[str]:

@@ -13,6 +13,7 @@ from evolvent.dynamics.results.transient.cases import TransientCase, case_pressu
 from evolvent.dynamics.results.transient.errors import MovingCompanion, case_errors
 from evolvent.dynamics.results.transient.facts import sentences, transient_facts, write_facts
 from evolvent.dynamics.results.transient.rows import tooth_rows, transient_rows, write_rows
+from evolvent.dynamics.transient.own_frequency import own_frequency
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
@@ -28,6 +29,7 @@ from evolvent.run.dynamics.transient.checks import (
     WRITTEN,
     prepared_folder,
     transient_section,
+    unused_keys,
 )
 from evolvent.run.dynamics.transient.kept_cases import KeptCases
 from evolvent.run.dynamics.transient.moving_companion import companion_of
@@ -60,7 +62,8 @@ def run_transient(
     transient_section(scene)
     problem = gear_problem(scene)
     check_positions(scene)
-    settings = drive_settings(problem.pair, scene.dynamics or DynamicsSection())
+    dynamics = scene.dynamics or DynamicsSection()
+    settings = drive_settings(problem.pair, dynamics)
 
     def kept(kind: str = "") -> KeptCases:
         return KeptCases.of(scene, problem.pair, out, kind)
@@ -72,6 +75,7 @@ def run_transient(
         found = own.found(kept())
         companion, missing = companion_of(scene, problem, settings, kept, comm, progress, prepare)
         progress.stage(OUTPUT)
+        said += unused_keys(dynamics)
         return said + missing + on_first(comm, lambda: _written(own, found, companion, out))
 
 
@@ -90,8 +94,9 @@ def _written(
     rows, teeth = list(transient_rows(pair.model, pressures, errors)), list(tooth_rows(pair.model, pressures, errors))
     begun = beginnings(pair.model, pressures, companion)
     started = list(start_rows(pair.model, pressures, begun))
-    mass = pair.drive.inertia / pair.lever**2
-    facts = transient_facts(pair.model, pressures, errors, [bars for _, bars in begun], pair.frequencies, mass)
+    natural = [own_frequency(pair, static) for static in own.static]
+    naturals = [natural[i] for _, i in own.tasks]
+    facts = transient_facts(pair.model, pressures, errors, [bars for _, bars in begun], pair.frequencies, naturals)
 
     def drawn() -> bytes:
         from evolvent.dynamics.figures.transient import transient_picture  # matplotlib takes a second to import

@@ -1,0 +1,47 @@
+"""The natural frequency of a pair on its mesh, with the natural modes of both bodies.
+
+In a static position under the mesh force F let s be the forces on the modes by a unit of F, k the tangent stiffness of
+the mesh, and k_r that of what answers at once, 1/k_r = 1/k − Σ s²/ω². With F = k_r (ℓψ − s·q), ℓ the lever of ψ, small
+motions of modes and ψ have the mass matrix of the pair and
+
+    K = [ Ω² + k_r s sᵀ   −k_r ℓ s ]
+        [   −k_r ℓ sᵀ       k_r ℓ² ] .
+
+Without modes this is ω² = k/m.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg import eigh
+
+from evolvent.dynamics.transient.moving_pair import MovingPair
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
+
+
+def own_frequency(pair: MovingPair, static: Sequence[PositionResult]) -> float:
+    """Of the mode that carries most of the static transmission error [Hz]: the root of the mean square of all positions
+    of a pitch."""
+    return float(np.sqrt(np.mean([_square(pair, position) for position in static]))) / (2.0 * np.pi)
+
+
+def _square(pair: MovingPair, position: PositionResult) -> float:
+    """ω² at a position."""
+    s, Ω2 = _modal_forces(pair, position), pair.frequencies**2
+    rest = 1.0 / (1.0 / position.stiffness - float(np.sum(s**2 / Ω2)))
+    jump = np.append(-s, pair.lever)
+    stiffness = np.diag(np.append(Ω2, 0.0)) + rest * np.outer(jump, jump)
+    squares, shapes = eigh(stiffness, pair.system.mass)
+    return float(squares[np.argmax(shapes[-1] ** 2 / squares)])
+
+
+def _modal_forces(pair: MovingPair, position: PositionResult) -> Floats:
+    """s (m,) on the modes of both gears."""
+    loaded = zip(Member, (position.pinion_rows, position.wheel_rows), (position.pinion_forces, position.wheel_forces))
+    modal = np.concatenate([pair.on_modes(member, rows, forces) for member, rows, forces in loaded])
+    torque = sum(share * taken for share, taken in zip(pair.drive.shares, position.torques))
+    return modal * (pair.lever / torque)

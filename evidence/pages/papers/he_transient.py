@@ -1,13 +1,15 @@
 """`python -m evidence.pages.papers.he_transient --out DIR`: He's pair by transient contact beside the torsional model.
 
 For docs/he2022.md: at speeds from a superharmonic to beyond the resonance, with the natural modes of both bodies and
-with none; and how the motion depends on the number of modes. Runs that an earlier call has ended are read again.
-`python -m evidence.pages` then writes the page.
+with none, also at the same parts of the natural speed that the pair has with them; how the motion depends on the number
+of modes; and the natural speed over the bore. Runs that an earlier call has ended are read again. `python -m
+evidence.pages` then writes the page.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,15 +32,25 @@ CONVERGED = 2000
 """r/min."""
 SETTINGS = "mesh.level=quick", "sweep.positions=80", "output.error_bars=false", "output.animation=false"
 WAYS = {"up": "running up", "down": "running down"}
+BORES = 36, 40, 70, 100
+"""mm."""
+OWN_INERTIA = "own_inertia.toml"
+"""The scene with the inertia of the gears as drawn, which changes with the bore."""
 
 
 def figures(runs: Runs) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
     yield from _torsional(runs)
-    speeds = f"transient.speeds_rpm={list(SPEEDS)}"
+    own = {}
     for name, more in (("modes", ()), ("rigid", ("transient.modes_per_harmonic=0",))):
-        for fact in _transient(runs, name, speeds, *more):
-            yield from _motion(f"{name}_{fact['speed_rpm']:.0f}", fact)
+        for speed, fact in zip(SPEEDS, _transient(runs, name, _at(SPEEDS), *more)):
+            yield from _motion(f"{name}_{speed}", fact)
+            own[name] = _natural_rpm(fact)
+        yield f"{name}_natural_rpm", own[name]
+    scaled = [speed * own["modes"] / own["rigid"] for speed in SPEEDS]
+    for speed, fact in zip(SPEEDS, _transient(runs, "scaled", _at(scaled))):
+        yield from _motion(f"scaled_{speed}", fact)
+    yield from _bores(runs)
     for count in COUNTS:
         (fact,) = _transient(runs, f"count_{count}", f"transient.speeds_rpm=[{CONVERGED}]",
                              f"transient.modes_per_harmonic={count}", "transient.steady_change=0.0005")  # fmt: skip
@@ -46,9 +58,32 @@ def figures(runs: Runs) -> Named:
         yield f"count_{count}_modes", fact["modes"]
 
 
-def _transient(runs: Runs, name: str, *settings: str) -> list[dict[str, Any]]:
+def _at(speeds: Sequence[float]) -> str:
+    return f"transient.speeds_rpm={[round(speed, 3) for speed in speeds]}"
+
+
+def _natural_rpm(fact: Mapping[str, float]) -> float:
+    """Speed at which the mesh frequency is the pair's own."""
+    return fact["natural_frequency_Hz"] / fact["mesh_frequency_Hz"] * fact["speed_rpm"]
+
+
+def _bores(runs: Runs) -> Named:
+    """The natural speed with modes and without, by the gears' own inertia."""
+    text = (DEMOS / "he2022_dynamics.toml").read_text(encoding="utf-8").splitlines()
+    scene = runs.out / OWN_INERTIA
+    scene.write_text("\n".join(line for line in text if "_inertia_kg_m2" not in line) + "\n", encoding="utf-8")
+    for bore in BORES:
+        gears = f"pinion.bore_diameter_mm={bore}", f"wheel.bore_diameter_mm={bore}", "transient.mesh_periods=2"
+        for name, more in (("modes", ()), ("rigid", ("transient.modes_per_harmonic=0",))):
+            (fact,) = _transient(runs, f"bore_{bore}_{name}", _at([SPEEDS[-1]]), *gears, *more, scene=scene)
+            yield f"bore_{bore}_{name}_rpm", _natural_rpm(fact)
+
+
+def _transient(
+    runs: Runs, name: str, *settings: str, scene: Path = DEMOS / "he2022_dynamics.toml"
+) -> list[dict[str, Any]]:
     set_to = [f"--set={each}" for each in (*SETTINGS, "transient.mesh_periods=200", *settings)]
-    words = module_run("evolvent", "transient", DEMOS / "he2022_dynamics.toml", "--quiet", "--overwrite", *set_to)
+    words = module_run("evolvent", "transient", scene, "--quiet", "--overwrite", *set_to)
     folder, _ = runs.ended(name, "transient.json", *words)
     facts: list[dict[str, Any]] = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
     return facts
@@ -87,12 +122,12 @@ def speeds_table(docs: Path) -> str:
     """Peak-to-peak transmission error and largest mesh force at each speed."""
     f = kept.kept(docs / KEPT, COMMAND)
     rows = [
-        (f"{speed}", *(_cell(f, f"{name}_{speed}") for name in (*WAYS, "rigid", "modes")), _steady(f, speed))
+        (f"{speed}", *(_cell(f, f"{name}_{speed}") for name in (*WAYS, "rigid", "modes", "scaled")), _steady(f, speed))
         for speed in SPEEDS
     ]
     head = (
         "speed [r/min]", *(f"torsional model, {words}" for words in WAYS.values()), "transient, no modes",
-        "transient, modes of both bodies", "mesh periods from statics",
+        "transient, modes of both bodies", f"the same at {_ratio(f):.3f} times the speed", "mesh periods from statics",
     )  # fmt: skip
     return markdown(head, rows)
 
@@ -117,7 +152,21 @@ def _cell(f: dict[str, float], name: str) -> str:
 def _steady(f: dict[str, float], speed: int) -> str:
     return ", ".join(
         f"{f[f'{name}_{speed}_periods']:.0f}" + ("" if f[f"{name}_{speed}_steady"] else " (not steady)")
-        for name in ("rigid", "modes")
+        for name in ("rigid", "modes", "scaled")
+    )
+
+
+def _ratio(f: Mapping[str, float]) -> float:
+    """Natural speed with modes over that without."""
+    return f["modes_natural_rpm"] / f["rigid_natural_rpm"]
+
+
+def bores_table(docs: Path) -> str:
+    """The natural speed over the bore."""
+    f = kept.kept(docs / KEPT, COMMAND)
+    rows = [(f"{bore}", f"{f[f'bore_{bore}_rigid_rpm']:.0f}", f"{f[f'bore_{bore}_modes_rpm']:.0f}") for bore in BORES]
+    return markdown(
+        ("bore [mm]", "natural speed, all inertia at the bore [r/min]", "with the modes of both bodies"), rows
     )
 
 

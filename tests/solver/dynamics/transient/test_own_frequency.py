@@ -33,7 +33,7 @@ def test_without_modes() -> None:
 
 @pytest.mark.parametrize("count", [0, 3])
 def test_pair_swings_at_it(count: int) -> None:
-    """Problem: at 1 r/min the pair swings undamped about statics, pushed by a fiftieth of its static transmission error.
+    """Problem: at 1 r/min the pair swings undamped about statics, pushed by a fiftieth of its static deflection.
     Exact: the harmonic that fits its course best has the frequency, which time steps lower by 0.4 % and which changes
     as the contact turns by a hundredth of a degree."""
     slow = moving("spur", 0.0, 1.0, count=count, free=True)

@@ -88,7 +88,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "scene.checking": (
         "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact", "gears.problem", "gears.meshing",
-        "gears.pressure", "dynamics", "dynamics.oscillator", "scene", "scene.schema",
+        "gears.pressure", "dynamics", "dynamics.oscillator", "strength.fatigue", "scene", "scene.schema",
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (
@@ -126,7 +126,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.tables",
     ),
     "dynamics.results.transient": (
-        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics.transient", "results.archive",
+        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient", "results.archive",
         "results.error_bars", "results.tables", "dynamics.results",
     ),
     "dynamics.figures": (

@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.pair_model import DriveSettings, geometric_backlash
+from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.schema.errors import InputProblem, SceneError
 from evolvent_meshes.gears.pair import GearPair
 
 FEWEST_POSITIONS = 3
-KG_M2 = 1e3
-"""t·mm² per kg·m²."""
 
 
 def check_positions(scene: Scene) -> None:
@@ -27,16 +25,11 @@ def check_positions(scene: Scene) -> None:
 
 def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
     """What the section says, with what follows from the gears where it says nothing."""
-    given = section.pinion_inertia_kg_m2, section.wheel_inertia_kg_m2
-    pinion, wheel = (
-        polar_moment(gear, section.density_kg_m3) if value is None else KG_M2 * value
-        for gear, value in zip(pair.gears, given)
-    )
     backlash = geometric_backlash(pair) if section.backlash_um is None else 1e-3 * section.backlash_um
     series = math.inf if section.series_stiffness_N_per_um is None else 1e3 * section.series_stiffness_N_per_um
     return DriveSettings(
-        (pinion, wheel), section.damping_ratio, backlash, section.damped_apart, section.ground_damping_ratio,
-        series, section.mesh,
+        moments_of_inertia(pair, section), section.damping_ratio, backlash, section.damped_apart,
+        section.ground_damping_ratio, series, section.mesh,
     )  # fmt: skip
 
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable
 from itertools import starmap
 from pathlib import Path
-from typing import NamedTuple
 
 from evolvent.contact.yang_estimate import LoadFactors, yang_estimate
 from evolvent.fem.parallel.machine import machine_megabytes
@@ -14,6 +13,7 @@ from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.scene.checking.form_rows import gear_lines, pair_lines
+from evolvent.scene.checking.planned_tables import planned_tables
 from evolvent.scene.checking.problem_size import (
     counted,
     flank_dofs,
@@ -24,6 +24,7 @@ from evolvent.scene.checking.problem_size import (
     strength_megabytes,
 )
 from evolvent.scene.checking.scene_warnings import scene_warnings
+from evolvent.scene.checking.text_table import Row, table
 from evolvent.scene.gear_pair import working_angle_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.plain_text import fixed
@@ -38,15 +39,6 @@ from evolvent_meshes.gears.pair import GearPair
 HANDS = {1: "right", -1: "left"}
 
 
-class Row(NamedTuple):
-    """A line of a table: name, symbol, unit, and one or two formatted values."""
-
-    name: str
-    symbol: str
-    unit: str
-    values: tuple[str, ...]
-
-
 def overview(scene: Scene) -> str:
     """The text that `evolvent check` prints, with the symbols of ISO 21771:2007."""
     pair, estimate = scene.gear_pair(), scene.hertz_estimate()
@@ -56,21 +48,12 @@ def overview(scene: Scene) -> str:
         table("Pair", [*_pair_rows(pair), *starmap(Row, pair_lines(pair))]),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
         *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
-        *_vibration(scene),
+        *planned_tables(scene),
         table("Mesh and cost (estimate)", _cost_rows(scene), GEARS) + _room_line(scene),
         _skip_lines(scene),
         *_warning_lines(scene),
     ]
     return "\n\n".join(blocks)
-
-
-def _vibration(scene: Scene) -> list[str]:
-    """The table of [dynamics], where the scene has it."""
-    if scene.dynamics is None:
-        return []
-    from evolvent.scene.checking.vibration_rows import vibration_lines  # Numba takes a second to import
-
-    return [table("Vibration", [Row(*line) for line in vibration_lines(scene, scene.dynamics)], GEARS)]
 
 
 def _skip_lines(scene: Scene) -> str:
@@ -86,14 +69,6 @@ def _skip_lines(scene: Scene) -> str:
 def _warning_lines(scene: Scene) -> list[str]:
     warnings = scene_warnings(scene)
     return ["\n".join(["Warnings", *(f"  {sentence}" for sentence in warnings)])] if warnings else []
-
-
-def table(title: str, rows: Iterable[Row], heads: tuple[str, ...] = ("",)) -> str:
-    """A table with aligned columns: name, symbol, unit, values."""
-    lines = [f"{title:<62}" + "".join(f"{head:>13}" for head in heads)]
-    for row in rows:
-        lines.append(f"  {row.name:<42}{row.symbol:<8}{row.unit:<10}" + "".join(f" {text:>12}" for text in row.values))
-    return "\n".join(line.rstrip() for line in lines)
 
 
 def _both(name: str, symbol: str, unit: str, digits: int, values: Iterable[float]) -> Row:

@@ -14,6 +14,7 @@ from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings, tip_edge_warnings
 from evolvent.gears.meshing.undercut import undercut_warnings
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
+from evolvent.scene.checking.transient_rows import transient_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 
@@ -42,6 +43,7 @@ def _expected(scene: Scene) -> Iterator[str]:
             "falls to 1e-3 and below, and those of order 1 are too stiff in bending; hexahedra of order 2 are the "
             "better choice."
         )
+    yield from transient_warnings(scene)
     yield from undercut_warnings(problem)
     yield from modification_warnings(problem)
     yield from tip_edge_warnings(problem)

@@ -51,3 +51,9 @@ VON_MISES = Criterion("von_mises", "von Mises")
 DANG_VAN = Criterion("dang_van", "Dang Van")
 TENSION = Criterion("tension", "tensile stress along the flank", places=(SURFACE, NEAR))
 FATEMI_SOCIE = Criterion("fatemi_socie", "Fatemi-Socie", unit="", pressure_power=2.0)
+
+
+def criteria_of(yield_stress: float | None) -> list[Criterion]:
+    """Those that are computed. yield_stress: σ_y of the material [MPa], None where it is not known."""
+    always = [CONTACT_PRESSURE, ORTHOGONAL_SHEAR, MAXIMUM_SHEAR, VON_MISES, DANG_VAN, TENSION]
+    return always if yield_stress is None else [*always, FATEMI_SOCIE]

@@ -31,6 +31,7 @@ from evolvent.strength.fatigue.criterion import (
     TENSION,
     VON_MISES,
     Criterion,
+    criteria_of,
 )
 from evolvent.strength.fatigue.flank_loads import FlankLoads
 from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
@@ -85,7 +86,7 @@ def flank_fatigue(
 ) -> FlankFatigue:
     """Of one gear. friction: μ of the contact solution. depths: over the half-width, 0 the surface."""
     steps = np.minimum(np.round(loads.friction / max(friction, 1e-300) * RATIOS), RATIOS)
-    values = {each: np.zeros((len(loads.peak), len(depths))) for each in criteria_of(material)}
+    values = {each: np.zeros((len(loads.peak), len(depths))) for each in criteria_of(material.yield_stress)}
     for step in np.unique(steps):
         here = np.flatnonzero(steps == step)
         for column, depth in enumerate(depths):
@@ -93,12 +94,6 @@ def flank_fatigue(
             for criterion, value in found.items():
                 values[criterion][here, column] = value
     return FlankFatigue(loads, np.array(depths), values)
-
-
-def criteria_of(material: FatigueMaterial) -> list[Criterion]:
-    """Those that are computed."""
-    always = [CONTACT_PRESSURE, ORTHOGONAL_SHEAR, MAXIMUM_SHEAR, VON_MISES, DANG_VAN, TENSION]
-    return always if material.yield_stress is None else [*always, FATEMI_SOCIE]
 
 
 def passage() -> Floats:

@@ -10,6 +10,7 @@ from itertools import zip_longest
 
 import numpy as np
 
+from evolvent.dynamics.resolved_vibration import ENOUGH_STEPS, unresolved
 from evolvent.dynamics.results.transient.beginning import StartErrors
 from evolvent.dynamics.results.transient.cases import UM, CasePressures
 from evolvent.dynamics.results.transient.compared import FINER
@@ -21,11 +22,8 @@ from evolvent.results.tables.tables import without_nan
 from evolvent_meshes.arrays import Floats
 
 TRANSIENT_FACTS = "transient.json"
-ENOUGH_STEPS = 20.0
-"""A period of the pair's own vibration: the method's period is 1.1 % too long then, with eight steps 6.4 %
-(ρ_∞ = 0.8, without damping), more than a resonance is wide."""
 SEEN_STEPS = 8.0
-"""Of shorter steps: error bars from fewer see nothing of the vibration."""
+"""Of shorter steps a period: error bars from fewer see nothing of the vibration."""
 
 
 @dataclass(frozen=True)
@@ -174,10 +172,7 @@ def sentences(facts: Sequence[TransientFacts], positions: int, tolerance: float 
         return unsteady + [_beyond(fact, tolerance) for fact in facts if fact.step_error > tolerance]
     coarse = {fact.speed_rpm: fact for fact in facts if fact.steps_per_natural_period < ENOUGH_STEPS}
     return unsteady + [
-        f"{speed:g} r/min: the pair's own vibration of {fact.natural_frequency_Hz:.0f} Hz has "
-        f"{fact.steps_per_natural_period:.2g} time steps a period; wanted {ENOUGH_STEPS:g}: what the mesh excites of "
-        f"it is not resolved; sweep.positions = {math.ceil(positions * ENOUGH_STEPS / fact.steps_per_natural_period)} "
-        f"resolves it, transient.spectral_radius = 0 leaves statics where that is too many{_doubt(fact)}"
+        unresolved(speed, fact.natural_frequency_Hz, fact.steps_per_natural_period, positions) + _doubt(fact)
         for speed, fact in coarse.items()
     ]
 

@@ -1,0 +1,84 @@
+"""What `evolvent check` tells of the section [transient]: motions, time steps, speeds at which these are long."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from evolvent.scene.checking.check_report import overview
+from evolvent.scene.checking.scene_warnings import scene_warnings
+from evolvent.scene.checking.transient_rows import natural_frequency, planned_steps, transient_lines
+from evolvent.scene.scene import Scene, load_scene
+from tests.support.checkout import ROOT
+from tests.support.gear_cases import spur_scene
+
+NATURAL = 4566.0 / 60.0 * 50.0
+"""[Hz] of He's pair, by ISO's natural speed (test_vibration_rows.py)."""
+UNRESOLVED = "the pair's own vibration of 3805 Hz"
+
+
+def pair(*settings: str) -> Scene:
+    """He's, with three speeds."""
+    return load_scene(ROOT / "demos/he2022_dynamics.toml", settings)
+
+
+def told(scene: Scene, companion: bool = True) -> dict[str, str]:
+    """Name of a line -> its value."""
+    assert scene.transient is not None
+    return {name.strip(): values[0] for name, _, _, values in transient_lines(scene, scene.transient, companion)}
+
+
+def test_motions_and_steps_are_counted() -> None:
+    """3 speeds × 2 coefficients are 6 motions, 18 with those for error bars; 40 positions are as many steps, at least
+    where a tolerance divides them."""
+    found = told(pair("contact.friction=[0,0.1]"))
+    assert (found["speeds × friction coefficients"], found["motions"]) == ("3 × 2", "6")
+    assert found["with those of coarser gears, for error bars"] == "18"
+    assert found["time steps in a mesh period"] == "40"
+    assert "with those of coarser gears, for error bars" not in told(pair(), companion=False)
+    divided = told(pair("transient.tolerance=0.01", "transient.most_parts=32"))
+    assert divided["time steps in a mesh period, at least"] == "40"
+    assert divided["each of which is divided by, at most"] == "32"
+
+
+def test_steps_of_each_speed() -> None:
+    """Exact: f_z = n z/60, 1250 Hz at 1500 r/min; a fortieth of 1/f_z a step, 20 µs; 1/(f_n h) = 13.14 steps in a
+    period of ISO's natural frequency."""
+    scene = pair()
+    assert scene.transient is not None
+    slow, *_ = planned_steps(scene, scene.transient)
+    assert (slow.speed, slow.mesh_frequency, slow.length) == pytest.approx((1500.0, 1250.0, 20e-6))
+    assert slow.a_period == pytest.approx(1.0 / (NATURAL * 20e-6), rel=1e-3)
+
+
+def test_the_gear_without_the_torque_at_constant_speed() -> None:
+    """Equal gears: the mass that swings is I/r_b², not I/(2 r_b²), and the frequency 1/√2 of that of free ones."""
+    free, held = pair(), pair("transient.drive=constant_speed")
+    assert free.transient is not None and held.transient is not None
+    assert natural_frequency(free, free.transient) == pytest.approx(NATURAL, rel=1e-3)
+    expected = natural_frequency(free, free.transient) / math.sqrt(2.0)
+    assert natural_frequency(held, held.transient) == pytest.approx(expected, rel=1e-9)
+
+
+def test_speeds_that_are_not_resolved_are_warned_of() -> None:
+    """13.14 steps a period at 40 positions are 7.9 at 24: then 25 resolve 1500 r/min, and faster speeds are fine; with
+    a tolerance steps are divided, and nothing is said."""
+    assert not any(UNRESOLVED in each for each in scene_warnings(pair()))
+    (said,) = (each for each in scene_warnings(pair("sweep.positions=24")) if UNRESOLVED in each)
+    assert said.startswith("1500 r/min: ") and "has 7.9 time steps a period; wanted 8" in said
+    assert "sweep.positions = 25 " in said and "ISO 6336-1" in said
+    divided = pair("sweep.positions=24", "transient.tolerance=0.01")
+    assert not any(UNRESOLVED in each for each in scene_warnings(divided))
+
+
+def test_tables_are_printed_with_their_sections_alone() -> None:
+    """A scene without [transient] and [fatigue] has no such tables; with [fatigue] the criteria stand in one line,
+    that of Fatemi and Socie with a yield stress alone."""
+    plain, text = overview(spur_scene()), overview(pair("fatigue.depths=[0,0.5,3]"))
+    assert "\nTransient contact" in text and "\nTime steps at each speed" in text
+    (line,) = (line for line in text.splitlines() if "Dang Van" in line)
+    assert line.startswith("  3 depths down to 3 half-widths of the contact: contact pressure, ")
+    assert "Fatemi-Socie" not in line
+    assert "Fatemi-Socie" in overview(pair("fatigue.yield_stress_MPa=1500"))
+    assert "Transient" not in plain and "Contact fatigue" not in plain

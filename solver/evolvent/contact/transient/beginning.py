@@ -15,6 +15,7 @@ from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
 from evolvent.contact.transient.settings import InitialState, TransientSettings
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
+from evolvent.fem.body import Body
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.input_checks import Words, refuse
 
@@ -43,7 +44,7 @@ def begun(
 ) -> Reached:  # fmt: skip
     """The state at time 0. first: the loads, unless the start is a static equilibrium; length: of the first step [s].
 
-    Raises InputError, NotConverged, SearchError.
+    Raises NotConverged, SearchError.
     """
     step = start.step or first
     solution, deformed = None, None
@@ -65,21 +66,12 @@ def begun(
 
 
 def _velocity(body: MovingBody, index: int, start: InitialState) -> Floats:
-    """Of modes and rigid motions (m + r). Raises InputError for one that the body's supports do not allow."""
+    """Of modes and rigid motions (m + r); `check` has seen that the free ones make it."""
     velocity = np.zeros(len(body.system.stiffness))
-    if index not in start.velocities:
-        return velocity
-    wanted = np.array(start.velocities[index])
-    shapes = body.condensed.assembled.motions.shapes[:, :, body.free]
-    whole = np.broadcast_to(wanted, shapes.shape[:2]).ravel()
-    flat = shapes.reshape(len(whole), -1)
-    rates = np.linalg.lstsq(flat, whole, rcond=None)[0]
-    if np.abs(flat @ rates - whole).max() > 1e-9 * np.abs(wanted).max():
-        refuse(
-            f"initial state, velocity of body {index}", "one along its free rigid motions", start.velocities[index],
-            "free the motion by a Freedom of its Rigid, or leave out the support that stops it",
-        )  # fmt: skip
-    velocity[body.count + body.free] = rates
+    if index in start.velocities:
+        shapes = body.condensed.assembled.motions.shapes[:, :, body.free]
+        whole = np.broadcast_to(start.velocities[index], shapes.shape[:2]).ravel()
+        velocity[body.count + body.free] = np.linalg.lstsq(shapes.reshape(len(whole), -1), whole, rcond=None)[0]
     return velocity
 
 
@@ -119,3 +111,21 @@ def check(problem: Problem, settings: TransientSettings, start: InitialState) ->
             refuse("initial state, velocities", wanted, index, "bodies are counted from 0")
         if len(v) != (d := problem.bodies[index].mesh.dimension):
             refuse(f"velocity of body {index}", f"{d} components, as the body is {d}D", v, "give as many")
+        _check_free(problem.bodies[index], index, v)
+
+
+def _check_free(body: Body, index: int, velocity: tuple[float, ...]) -> None:
+    """Raises InputError for a velocity that supports, the rigid coupling or a prescribed motion do not allow."""
+    axes = "xyz"[: len(velocity)]
+    if body.rigid:
+        free = {freedom.direction for freedom in body.rigid.freedoms if freedom.load is not None}
+    else:
+        free = set(axes).difference(*(support.directions for support in body.supports))
+    if any(v and axis not in free for v, axis in zip(velocity, axes)):
+        along = ", ".join(axis for axis in axes if axis in free)
+        refuse(
+            f"initial state, velocity of body {index}",
+            f"one along its free rigid motions, {along}" if along else "none, as the body is held",
+            velocity,
+            "give its Rigid a Freedom with a load, which may be 0, or leave out the support that stops it",
+        )  # fmt: skip

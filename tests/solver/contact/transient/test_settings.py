@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -61,13 +62,44 @@ def test_velocities_that_are_none(velocities: Any) -> None:
 
 @pytest.mark.parametrize(
     ("velocities", "named"),
-    [({2: (0.0, 1.0)}, "body indices below 2"), ({0: (0.0, 1.0, 0.0)}, "2 components"), ({0: (1.0, 0.0)}, "free rigid"),
-     ({1: (0.0, 1.0)}, "free rigid")],
+    [({2: (0.0, 1.0)}, "body indices below 2"), ({0: (0.0, 1.0, 0.0)}, "2 components"),
+     ({0: (1.0, -1.0)}, r"body 0: wanted one along its free rigid motions, y, found \(1\.0, -1\.0\); give its Rigid"),
+     ({1: (0.0, 1.0)}, r"body 1: wanted none, as the body is held, found \(0\.0, 1\.0\)")],
 )  # fmt: skip
 def test_velocities_that_do_not_fit_the_problem(velocities: dict[int, tuple[float, ...]], named: str) -> None:
     """No such body; three components in 2D; along a motion that the lid has not; of a body that is held."""
     with pytest.raises(InputError, match=named):
-        Transient(blocks(), H, InitialState(velocities=velocities)).solve()
+        Transient(blocks(), H, InitialState(velocities=velocities))
+
+
+def test_a_velocity_along_a_prescribed_motion() -> None:
+    """The lid moves along y as prescribed, so that the body cannot begin with a speed of its own."""
+    lid = Rigid("top", (Freedom("y", displacement=-0.1), Freedom("x", load=0.0)))
+    upper, lower = blocks().bodies
+    problem = Problem((replace(upper, rigid=lid), lower), blocks().contacts)
+    with pytest.raises(InputError, match="free rigid motions, x, found"):
+        Transient(problem, H, InitialState(velocities={0: (0.0, -1.0)}))
+
+
+def test_a_velocity_along_a_support() -> None:
+    """A body without a lid that is held along x flies along y alone."""
+    upper, lower = blocks().bodies
+    floating = replace(upper, rigid=None, supports=(Fixed("left", "x"),))
+    problem = Problem((floating, lower), blocks().contacts)
+    with pytest.raises(InputError, match="free rigid motions, y, found"):
+        Transient(problem, H, InitialState(velocities={0: (1.0, -1.0)}))
+    moment = Transient(problem, H, InitialState(velocities={0: (0.0, -1.0)})).solve()
+    assert abs(moment.velocities[0]) == pytest.approx([1.0], rel=1e-12)
+
+
+def test_velocities_are_those_of_the_first_moment() -> None:
+    """A block thrown along both axes that its lid leaves free, which are named in another order than the components,
+    and no force: after a step it has the same speeds, to 1e-12, and does not turn."""
+    lid = Rigid("top", (Freedom("rz", load=0.0), Freedom("y", load=0.0), Freedom("x", load=0.0)))
+    upper, lower = blocks().bodies
+    problem = Problem((replace(upper, rigid=lid), lower), blocks().contacts)
+    moment = Transient(problem, H, InitialState(velocities={0: (3.0, -5.0)})).solve()
+    assert moment.velocities[0] == pytest.approx([0.0, -5.0, 3.0], rel=1e-12, abs=1e-9)
 
 
 def test_problems_that_have_no_transient() -> None:

@@ -48,10 +48,14 @@ def test_at_least_45_malformed_scenes() -> None:
         ("pinion.TEETH", "pinion.teeth"), ("wheel.Profile_Shift", "wheel.profile_shift"),
         ("material.poissons_ratio", "material.nu"), ("pair.a", "pair.centre_distance_mm"),
         ("wheel.inner_diameter_mm", "wheel.bore_diameter_mm"), ("pinion.outer_diameter", "pinion.tip_diameter_mm"),
+        ("transient.speed_rpm", "transient.speeds_rpm"), ("transient.speed", "transient.speeds_rpm"),
+        ("fatigue.exponent", "fatigue.exponents"), ("dynamics.speeds_rpm", "dynamics.speed_rpm"),
+        ("load.speed_rpm", "dynamics.speed_rpm"),
     ],
 )  # fmt: skip
 def test_unknown_key_suggests_the_key_that_was_meant(written: str, meant: str) -> None:
-    """Found by its spelling, by its symbol, or by what it means."""
+    """Found by its spelling, by its symbol, or by what it means; nearly the same spelling in the section goes
+    before the same spelling in another one."""
     with pytest.raises(SceneError, match=re.escape(f"did you mean {meant}?")):
         scene_from_text(YANG, [f"{written}=1"])
 

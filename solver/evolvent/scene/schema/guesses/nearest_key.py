@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 NEAR, NEARLY_THE_SAME = 0.7, 0.85
 """Least similarity of two keys (difflib's ratio): usually, and where the unknown key may ask for something that is not
@@ -29,7 +29,8 @@ GREEK = {"alpha": "α", "beta": "β", "mu": "μ", "nu": "ν", "rho": "ρ"}
 def nearest_key(name: str, here: Mapping[str, str], everywhere: Mapping[str, str], strict: bool = False) -> str:
     """The dotted key that was meant, empty where there is none.
 
-    here:       dotted key -> meaning, of the section that the unknown key is in; searched first.
+    here:       dotted key -> meaning, of the section that the unknown key is in; nearly the same spelling here goes
+                before the same spelling in another section.
     everywhere: the same of all sections.
     strict:     require nearly the same spelling.
     """
@@ -37,17 +38,28 @@ def nearest_key(name: str, here: Mapping[str, str], everywhere: Mapping[str, str
         return ""
     if meant := SYNONYMS.get(_stem(name)):
         return next((key for keys in (here, everywhere) for key in keys if _stem(key) == meant), "")
-    for keys in (here, everywhere):
-        if same := [key for key in keys if key.rsplit(".", 1)[-1].lower() == name.lower()]:
-            return same[0]
-    for keys in (here, everywhere):
-        stems = {_stem(key): key for key in reversed(list(keys))}
-        if match := difflib.get_close_matches(_stem(name), stems, n=1, cutoff=NEARLY_THE_SAME if strict else NEAR):
-            return stems[match[0]]
+    cutoff = NEARLY_THE_SAME if strict else NEAR
+    similar = (
+        _same(name, here), _close(name, here, NEARLY_THE_SAME, _last), _close(name, here, NEARLY_THE_SAME, _stem),
+        _same(name, everywhere), _close(name, here, cutoff, _stem), _close(name, everywhere, cutoff, _stem),
+    )  # fmt: skip
+    if found := next(filter(None, similar), ""):
+        return found
     wanted = {GREEK.get(word, word) for word in _words(_stem(name))}
     if strict or not wanted:
         return ""
     return next((key for keys in (here, everywhere) for key in keys if wanted <= _meaning(key, keys[key])), "")
+
+
+def _same(name: str, keys: Mapping[str, str]) -> str:
+    """The first key of this name, in whatever case; empty where there is none."""
+    return next((key for key in keys if _last(key) == name.lower()), "")
+
+
+def _close(name: str, keys: Mapping[str, str], cutoff: float, part: Callable[[str], str]) -> str:
+    """The key of which a part is spelled most alike; empty where none is alike by the cutoff."""
+    parts = {part(key): key for key in reversed(list(keys))}
+    return next((parts[match] for match in difflib.get_close_matches(part(name), parts, n=1, cutoff=cutoff)), "")
 
 
 def unit_conversion(name: str, meant: str) -> str:
@@ -64,9 +76,14 @@ def _meaning(key: str, text: str) -> set[str]:
     return _words(f"{_stem(key)} {phrase}") - {"a", "the", "of"} | set(phrase.lower().split()[-1:])
 
 
+def _last(key: str) -> str:
+    """The last part of a key, in lower case."""
+    return key.rsplit(".", 1)[-1].lower()
+
+
 def _stem(key: str) -> str:
     """The last part of a key without its unit, in lower case."""
-    return re.sub(r"_(mm|um|deg|Nm|GPa|m|mm2_per_N|Pa|MPa|N)$", "", key.rsplit(".", 1)[-1]).lower()
+    return re.sub(r"_(mm|um|deg|Nm|GPa|m|mm2_per_N|Pa|MPa|N|rpm)$", "", key.rsplit(".", 1)[-1]).lower()
 
 
 def _words(text: str) -> set[str]:

@@ -7,6 +7,8 @@ import math
 ENOUGH_STEPS = 20.0
 """A period of the pair's own vibration: the method's period is 1.1 % too long then, with eight steps 6.4 %
 (ρ_∞ = 0.8, without damping), more than a resonance is wide."""
+MOST_POSITIONS = 1000
+"""Of a mesh period, that a scene may have."""
 
 
 def unresolved(speed: float, natural: float, steps: float, positions: int) -> str:
@@ -17,9 +19,15 @@ def unresolved(speed: float, natural: float, steps: float, positions: int) -> st
     """
     if steps >= ENOUGH_STEPS:
         return ""
+    wanted = positions * ENOUGH_STEPS / steps if steps else math.inf
+    if wanted > MOST_POSITIONS:
+        remedy = f"no sweep.positions up to {MOST_POSITIONS} resolves it: transient.spectral_radius = 0 leaves statics"
+    else:
+        remedy = (
+            f"sweep.positions = {math.ceil(wanted)} resolves it, transient.spectral_radius = 0 leaves statics where "
+            "that is too many"
+        )
     return (
         f"{speed:g} r/min: the pair's own vibration of {natural:.0f} Hz has {steps:.2g} time steps a period; wanted "
-        f"{ENOUGH_STEPS:g}: what the mesh excites of it is not resolved; sweep.positions = "
-        f"{math.ceil(positions * ENOUGH_STEPS / steps)} resolves it, transient.spectral_radius = 0 leaves statics "
-        "where that is too many"
+        f"{ENOUGH_STEPS:g}: what the mesh excites of it is not resolved; {remedy}"
     )

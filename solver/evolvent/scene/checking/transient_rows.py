@@ -77,7 +77,7 @@ def planned_steps(scene: Scene, section: TransientSection) -> list[PlannedSteps]
     planned = []
     for speed in section.speeds_rpm:
         mesh = speed / 60.0 * teeth
-        length = 1.0 / (mesh * scene.sweep.positions)
+        length = 60.0 / (speed * teeth * scene.sweep.positions)
         planned.append(PlannedSteps(speed, mesh, length, 1.0 / (natural * length)))
     return planned
 

@@ -161,16 +161,16 @@ def mesh(
 @app.command(epilog="\b\nExample:\n  evolvent plot out/yang2022")
 def plot(
     directory: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Where a run has put its results.", parser=given_path)
+        Path, typer.Argument(metavar="DIR", help="Where it has put its results.", parser=given_path)
     ],
 ) -> None:
-    """Draw the pictures of a finished run again."""
+    """Draw the pictures of a finished run again, and that of `evolvent transient`."""
     with reported():
-        missing = "no summary.json in it" if directory.is_dir() else "no such directory"
+        missing = "no summary.json in it, and no transient.csv" if directory.is_dir() else "no such directory"
         begun = " --resume" if (directory / "results/state.npz").exists() else ""
         remedy = f"run `evolvent run SCENE.toml --out {directory}{begun}` first"
-        wanted = f"{directory}: found {missing}; allowed: the --out of a finished run; remedy: {remedy}"
-        require((directory / "summary.json").is_file(), wanted)
+        wanted = f"{directory}: found {missing}; allowed: the --out of a finished run or transient; remedy: {remedy}"
+        require(any((directory / name).is_file() for name in ("summary.json", "transient.csv")), wanted)
         from evolvent.run.redraw import plot_folder
 
         drawn = plot_folder(directory)

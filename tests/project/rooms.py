@@ -140,7 +140,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "strength.figures": ("meshes.gears", "results.drawing", "strength.fatigue", "strength.results"),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep", "gears.solution",
-        "dynamics", "dynamics.results", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
+        "dynamics", "dynamics.results.*", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem",

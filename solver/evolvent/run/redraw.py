@@ -1,36 +1,63 @@
-"""Draws the pictures of a finished run again, without touching other files of its folder."""
+"""Draws the pictures of a finished run or transient again, without touching other files of its folder."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
 
+from evolvent.dynamics.results.transient.kept_tables import PICTURE, KeptTables
+from evolvent.dynamics.results.transient.rows import TRANSIENT
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
-from evolvent.results.drawing.picture_files import Drawn, draw
+from evolvent.results.drawing.picture_files import Drawn, Picture, draw
 from evolvent.results.figures.all import pictures
 from evolvent.results.run_data import RunData, read_run
 from evolvent.run.folder_checks import changed_files
 
+RUN = "summary.json"
+DRAWN_AGAIN = RUN, TRANSIENT
+"""Files that say that there is something to draw: of `evolvent run`, of `evolvent transient`."""
+
 
 def plot_folder(out: Path) -> Drawn:
-    """Draws the pictures of a run from its scene.toml and its results.
+    """Draws the pictures of a run from its scene.toml and its results, that of a transient from its tables, or both.
 
-    out: folder of the run. Pictures are drawn even where the scene asks for none, the animation only where it does.
+    out: folder with one of `DRAWN_AGAIN`. Pictures are drawn even where the scene asks for none, the animation of a run
+    only where it does, that of a transient not: the contact lines are in none of its tables.
 
     Raises SceneError, ArchiveError, WriteError; FolderError where a run is computing into the folder.
     """
     with locked(out):
-        drawn = draw(pictures(_with_pictures(read_run(out))), RunFolder(out))
-        if sentence := changed_files(out):
-            drawn = Drawn(drawn.written, (*drawn.failures, sentence))
-        if not (out / "wear.json").is_file():
-            return drawn
-        from evolvent.wear.results import figures
-        from evolvent.wear.results.report import read_worn
+        drawn = _run(out) if (out / RUN).is_file() else Drawn((), ())
+        return _both(drawn, _transient(out)) if (out / TRANSIENT).is_file() else drawn
 
-        worn = draw(figures.pictures(read_worn(out)), RunFolder(out))
-        return Drawn(drawn.written + worn.written, drawn.failures + worn.failures)
+
+def _both(first: Drawn, second: Drawn) -> Drawn:
+    return Drawn(first.written + second.written, first.failures + second.failures)
+
+
+def _run(out: Path) -> Drawn:
+    """Those of a run, and of its wear."""
+    drawn = draw(pictures(_with_pictures(read_run(out))), RunFolder(out))
+    if sentence := changed_files(out):
+        drawn = Drawn(drawn.written, (*drawn.failures, sentence))
+    if not (out / "wear.json").is_file():
+        return drawn
+    from evolvent.wear.results import figures
+    from evolvent.wear.results.report import read_worn
+
+    return _both(drawn, draw(figures.pictures(read_worn(out)), RunFolder(out)))
+
+
+def _transient(out: Path) -> Drawn:
+    tables = KeptTables.read(out)
+
+    def drawn() -> bytes:
+        from evolvent.dynamics.figures.transient import transient_picture  # matplotlib takes a second to import
+
+        return transient_picture(tables.title, tables.rows, tables.teeth, tables.facts)
+
+    return draw([Picture(PICTURE, drawn)], RunFolder(out))
 
 
 def _with_pictures(run: RunData) -> RunData:

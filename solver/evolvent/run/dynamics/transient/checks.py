@@ -7,6 +7,7 @@ from pathlib import Path
 
 from evolvent.dynamics.results.transient.beginning import TRANSIENT_START
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
+from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.dynamics.transient.kept_cases import KEPT_CASES, KEPT_STATIC
@@ -15,8 +16,7 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent_meshes.errors import InputError
 
-PICTURE, START_PICTURE, ANIMATION = "transient.png", "transient_start.png", "field_of_action.gif"
-SCENE = "transient.toml"
+START_PICTURE, ANIMATION = "transient_start.png", "field_of_action.gif"
 UNUSED = "series_stiffness_N_per_um", "ground_damping_ratio", "mesh"
 """Keys of [dynamics]."""
 WRITTEN = (

@@ -12,6 +12,7 @@ from evolvent.dynamics.results.transient.beginning import beginnings, start_rows
 from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures, elements_across
 from evolvent.dynamics.results.transient.errors import MovingCompanion, case_errors
 from evolvent.dynamics.results.transient.facts import sentences, transient_facts, write_facts
+from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE
 from evolvent.dynamics.results.transient.rows import tooth_rows, transient_rows, write_rows
 from evolvent.dynamics.transient.own_frequency import own_frequency
 from evolvent.dynamics.transient.steady_state import MeshPeriods
@@ -23,8 +24,6 @@ from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.transient.cases import PairCases, PairMeshes
 from evolvent.run.dynamics.transient.checks import (
     ANIMATION,
-    PICTURE,
-    SCENE,
     START_PICTURE,
     WRITTEN,
     prepared_folder,

@@ -1,4 +1,4 @@
-"""Picture of a pair's transient contact: transmission error and contact pressure of a tooth, beside statics."""
+"""Picture of a pair's transient contact: transmission error, mesh force and pressure of a tooth, beside statics."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from evolvent.dynamics.results.transient.facts import TransientFacts
 from evolvent.dynamics.results.transient.rows import TransientRow, TransientToothRow
@@ -15,14 +16,14 @@ from evolvent.results.drawing.style import FAINT, INK, foot, friction_colours, n
 from evolvent_meshes.arrays import Floats
 
 Colour = tuple[float, ...]
-LONG = 5
-"""Entries of a legend in one column, at most one less."""
 BAND, BANDS = 0.15, 2
 """Opacity of error bars, and friction coefficients up to which they are drawn: more bands hide each other."""
-ROOM = 0.18
+ROOM = 0.12
 """Above the curves, of the height of a panel."""
+WIDTH, HEADER, ROW = 15.0, 1.4, 3.0
+"""Of the sheet, of its titles with the foot, and of a line of panels [inch]."""
 STATIC = {"ls": "--", "lw": 1.0}
-SUBTITLE = "The last mesh period, repeated. Solid: with inertia. Dashed: without, at the same positions."
+SUBTITLE = "The last mesh period, repeated, at each speed of the pinion, beside the same positions without inertia"
 
 
 def transient_picture(
@@ -36,58 +37,90 @@ def transient_picture(
 def transient_figure(
     title: str, rows: Sequence[TransientRow], teeth: Sequence[TransientToothRow], facts: Sequence[TransientFacts]
 ) -> Figure:
-    """A line of panels for each speed: transmission error over a pitch, pressure of a tooth over its engagement."""
-    speeds = sorted({fact.speed_rpm for fact in facts})
-    figure = sheet(f"{title}: contact with inertia", SUBTITLE, (11.0, 1.4 + 3.0 * len(speeds)))
-    grid = figure.subplots(len(speeds), 2, squeeze=False, width_ratios=(1.0, 1.3))
-    frictions = sorted({fact.friction for fact in facts})
+    """A line of panels for each speed: transmission error and mesh force over two pitches, pressure of a tooth over its
+    engagement."""
+    speeds, frictions = (sorted(set(each)) for each in zip(*((fact.speed_rpm, fact.friction) for fact in facts)))
+    figure = sheet(f"{title}: contact with inertia", SUBTITLE, (WIDTH, HEADER + ROW * len(speeds)))
+    grid = figure.subplots(len(speeds), 3, squeeze=False, width_ratios=(1.0, 1.0, 1.2))
     banded = len(frictions) <= BANDS and any(np.isfinite(row.transmission_error_um_error) for row in rows)
-    for (errors, pressures), speed in zip(grid, speeds):
-        for friction, colour in zip(frictions, friction_colours(frictions)):
-            _errors(errors, [row for row in rows if (row.speed_rpm, row.friction) == (speed, friction)], colour, banded)
-            own = [row for row in teeth if (row.speed_rpm, row.friction) == (speed, friction)]
-            _pressures(pressures, own, colour, friction, banded)
-        errors.set_ylabel("transmission error [µm]")
-        pressures.set_ylabel("peak pressure [MPa]")
-        for axes in (errors, pressures):
+    colours = friction_colours(frictions)
+    for panels, speed in zip(grid, speeds):
+        for friction, colour in zip(frictions, colours):
+            case = (speed, friction)
+            load = next(fact.load_N for fact in facts if (fact.speed_rpm, fact.friction) == case)
+            own = [row for row in rows if (row.speed_rpm, row.friction) == case]
+            _errors(panels[0], own, colour, banded)
+            _forces(panels[1], own, load, colour, banded)
+            _pressures(panels[2], [row for row in teeth if (row.speed_rpm, row.friction) == case], colour, banded)
+        for axes, quantity in zip(panels, ("transmission error [µm]", "mesh force [N]", "peak pressure [MPa]")):
+            axes.set_ylabel(quantity)
             note(axes, f"{speed:g} r/min")
-    for axes in grid.flat:  # room for notes and legend
+        panels[1].set_ylim(bottom=0.0)
+        panels[2].set_ylim(bottom=max(0.0, panels[2].get_ylim()[0]))
+    for axes in grid.flat:  # room for notes
         low, high = axes.get_ylim()
         axes.set_ylim(low, high + ROOM * (high - low))
-    grid[0][1].legend(loc="upper right", ncols=1 if len(frictions) < LONG else 2)
-    grid[-1][0].set_xlabel("rotation of the pinion [°]")
-    grid[-1][1].set_xlabel("rotation of the pinion since the tooth met at the pitch point [°]")
+    for axes in grid[-1][:2]:
+        axes.set_xlabel("rotation of the pinion [°]")
+    grid[-1][2].set_xlabel("rotation of the pinion since the tooth met at the pitch point [°]")
+    _legend(figure, frictions, colours)
     unsteady = [fact for fact in facts if not fact.steady]
     foot(
         figure,
-        "Pressure: largest of the fitted half-ellipses along the contact line, between the tip-edge zones."
+        "Mesh force: along the line of action. Pressure: largest of the fitted half-ellipses along the contact line, "
+        "between the tip-edge zones."
         + (" Bands: error bars." if banded else "")
         + (f" Not steady yet: {len(unsteady)} of {len(facts)} motions." if unsteady else ""),
     )
     return figure
 
 
+def _legend(figure: Figure, frictions: Sequence[float], colours: Sequence[Colour]) -> None:
+    """Beside the titles, where it hides no curve."""
+    lines = [Line2D([], [], color=colour, label=f"μ = {μ:g}") for μ, colour in zip(frictions, colours)]
+    lines += [Line2D([], [], color=INK, label="with inertia"), Line2D([], [], color=INK, label="without", **STATIC)]
+    width, height = figure.get_size_inches()
+    figure.legend(
+        handles=lines, loc="upper right", ncols=(len(lines) + 1) // 2, borderaxespad=0.0,
+        bbox_to_anchor=(1.0 - 0.14 / width, 1.0 - 0.1 / height),
+    )  # fmt: skip
+
+
 def _errors(axes: Axes, rows: Sequence[TransientRow], colour: Colour, banded: bool) -> None:
-    """Over two pitches."""
+    over = _pitches(axes, rows)
+    bars = np.array([(row.transmission_error_um, row.transmission_error_um_error) for row in rows])
+    if banded:
+        _band(axes, over, _twice(bars), colour)
+    axes.plot(over, _twice(bars[:, 0]), color=colour)
+    axes.plot(over, _twice(np.array([row.static_transmission_error_um for row in rows])), color=colour, **STATIC)
+
+
+def _forces(axes: Axes, rows: Sequence[TransientRow], load: float, colour: Colour, banded: bool) -> None:
+    """load: the mesh force without inertia [N]."""
+    over = _pitches(axes, rows)
+    bars = np.array([(row.mesh_force_N, row.mesh_force_N_error) for row in rows])
+    if banded:
+        _band(axes, over, _twice(bars), colour, least=0.0)
+    axes.plot(over, _twice(bars[:, 0]), color=colour)
+    axes.axhline(load, color=colour, **STATIC)
+
+
+def _pitches(axes: Axes, rows: Sequence[TransientRow]) -> Floats:
+    """Rotations of two pitches with the end of the second (2n + 1,) [°], over which the panel is drawn."""
     angle = np.array([row.pinion_angle_deg for row in rows])
     pitch = len(angle) * float(np.diff(angle).mean())
-    over = np.concatenate([angle, angle + pitch])
-    bars = [(row.transmission_error_um, row.transmission_error_um_error) for row in rows]
-    if banded:
-        _band(axes, over, np.tile(bars, (2, 1)), colour)
-    for values, style in (
-        ([row.transmission_error_um for row in rows], {}),
-        ([row.static_transmission_error_um for row in rows], STATIC),
-    ):
-        axes.plot(over, np.tile(values, 2), color=colour, **style)
     axes.set_xlim(0.0, 2.0 * pitch)
     axes.axvline(pitch, color=FAINT, lw=0.8, zorder=0)
-    axes.text(pitch, 0.02, " one pitch", color=INK, fontsize=7, va="bottom", transform=axes.get_xaxis_transform())
+    axes.text(pitch, 0.02, " one pitch", color=INK, fontsize=8, va="bottom", transform=axes.get_xaxis_transform())
+    return np.concatenate([angle, angle + pitch, angle[:1] + 2.0 * pitch])
 
 
-def _pressures(
-    axes: Axes, rows: Sequence[TransientToothRow], colour: Colour, friction: float, banded: bool
-) -> None:
+def _twice(values: Floats) -> Floats:
+    """Values of a mesh period (n, ...), repeated, with that of the beginning at the end (2n + 1, ...)."""
+    return np.concatenate([values, values, values[:1]])
+
+
+def _pressures(axes: Axes, rows: Sequence[TransientToothRow], colour: Colour, banded: bool) -> None:
     """Over the engagement, with gaps where no pressure is known."""
     angle = np.array([row.tooth_angle_deg for row in rows])
     if not len(angle):
@@ -96,15 +129,16 @@ def _pressures(
     breaks = np.flatnonzero(np.diff(angle) > 1.5 * step) + 1
     bars = np.array([(row.max_pressure_MPa, row.max_pressure_MPa_error) for row in rows])
     if banded:
-        _band(axes, np.insert(angle, breaks, np.nan), np.insert(bars, breaks, np.nan, axis=0), colour)
+        _band(axes, np.insert(angle, breaks, np.nan), np.insert(bars, breaks, np.nan, axis=0), colour, 0.0)
     for values, style in (
-        ([row.max_pressure_MPa for row in rows], {"label": f"μ = {friction:g}"}),
+        ([row.max_pressure_MPa for row in rows], {}),
         ([row.static_max_pressure_MPa for row in rows], STATIC),
     ):
         axes.plot(np.insert(angle, breaks, np.nan), np.insert(values, breaks, np.nan), color=colour, **style)
 
 
-def _band(axes: Axes, angle: Floats, bars: Floats, colour: Colour) -> None:
-    """Between the error bars (n, 2) of a curve: its values, and their errors; none where these are not known."""
+def _band(axes: Axes, angle: Floats, bars: Floats, colour: Colour, least: float = -np.inf) -> None:
+    """Between the error bars (n, 2) of a curve: its values, and their errors; none where these are not known.
+    least: below which the quantity cannot be."""
     value, error = bars.T
-    axes.fill_between(angle, value - error, value + error, color=colour, alpha=BAND, lw=0.0)
+    axes.fill_between(angle, np.maximum(value - error, least), value + error, color=colour, alpha=BAND, lw=0.0)

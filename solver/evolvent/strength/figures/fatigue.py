@@ -14,6 +14,7 @@ from evolvent.results.drawing.style import FAINT, PINION, PRESSURE_MAP, foot, fr
 from evolvent.strength.fatigue.criterion import BELOW, DANG_VAN, DEEP, ORTHOGONAL_SHEAR, VON_MISES
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
 from evolvent.strength.results.fatigue_rows import FrictionFatigue, depths_at, diameters
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
@@ -43,7 +44,7 @@ def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue])
         scale = Normalize(0.0, float(own.values[DANG_VAN].max()))
         _over_flank(over, pair, own, scale)
         _section(section, pair, own, scale)
-        figure.colorbar(ScalarMappable(scale, PRESSURE_MAP), ax=section, label="MPa")
+        figure.colorbar(ScalarMappable(scale, PRESSURE_MAP), ax=section, label=f"{DANG_VAN.words} [MPa]")
         _below(below, found)
     foot(
         figure,
@@ -57,15 +58,15 @@ def _over_flank(axes: Axes, pair: GearPair, own: FlankFatigue, scale: Normalize)
     """Largest below the surface, over face and diameter; over the diameter alone in plane strain."""
     diameter = diameters(pair, Member.PINION, own.loads.roll_distance)
     values = own.values[DANG_VAN][:, depths_at(own, BELOW)].max(axis=1)
-    axes.set_title(f"largest below {DEEP:g} half-widths", fontsize=10)
+    axes.set_title(f"{DANG_VAN.words}: largest below {DEEP:g} half-widths", fontsize=10)
     axes.set_ylabel("diameter of the pinion [mm]")
     if len(np.unique(own.loads.height)) > 1:
-        axes.tricontourf(own.loads.height, diameter, values, LEVELS, cmap=PRESSURE_MAP, norm=scale)
+        axes.tricontourf(own.loads.height, diameter, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
         axes.set_xlabel("face [mm]")
     else:
         order = np.argsort(diameter)
         axes.plot(values[order], diameter[order], color=PINION, marker=".")
-        axes.set_xlabel("MPa")
+        axes.set_xlabel(f"{DANG_VAN.words} [MPa]")
     _pitch_line(axes, pair)
 
 
@@ -78,10 +79,15 @@ def _section(axes: Axes, pair: GearPair, own: FlankFatigue, scale: Normalize) ->
     known = own.depths_mm[middle]
     depths = np.linspace(0.0, float(np.median(own.loads.half_width)) * SHOWN, DEPTHS)
     values = [np.interp(depths, *each) for each in zip(known, own.values[DANG_VAN][middle])]
-    axes.contourf(1e3 * depths, diameter, values, LEVELS, cmap=PRESSURE_MAP, norm=scale)
-    axes.set_title("below mid-face" if len(heights) > 1 else "below the flank", fontsize=10)
+    axes.contourf(1e3 * depths, diameter, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
+    axes.set_title(f"{DANG_VAN.words}: below {'mid-face' if len(heights) > 1 else 'the flank'}", fontsize=10)
     axes.set_xlabel("depth [µm]")
     _pitch_line(axes, pair)
+
+
+def _levels(scale: Normalize) -> Floats:
+    """Limits of the colours, none above the scale."""
+    return np.linspace(0.0, float(scale.vmax or 1.0), LEVELS + 1)
 
 
 def _pitch_line(axes: Axes, pair: GearPair) -> None:
@@ -98,8 +104,8 @@ def _below(axes: Axes, found: Sequence[FrictionFatigue]) -> None:
         axes.plot([], [], color=colour, label=f"μ = {each.friction:g}")
     for criterion, style in PROFILES.items():
         axes.plot([], [], style, color=FAINT, label=criterion.words)
-    axes.invert_yaxis()
-    axes.set_xlabel("MPa")
+    axes.set_ylim(axes.get_ylim()[1], 0.0)
+    axes.set_xlabel("criterion [MPa]")
     axes.set_ylabel("depth [µm]")
     axes.set_xlim(left=0.0)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))

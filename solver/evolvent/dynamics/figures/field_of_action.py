@@ -20,6 +20,9 @@ from evolvent.results.drawing.style import ABOVE, FAINT, INK, PINION, PRESSURE_M
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
+NO_ZONE = 1e-6
+"""A zone of a tip edge that is no longer [mm] is none."""
+
 
 @dataclass(frozen=True)
 class FieldOfAction:
@@ -44,6 +47,17 @@ class FieldOfAction:
         peaks = np.concatenate([pooled_peaks(cut) for cut in self.pressures.moving.cuts])
         return float(np.nanmax(peaks, initial=1.0))
 
+    @cached_property
+    def zones(self) -> list[tuple[float, float]]:
+        """Of tip edges, from and to [mm] on the path of contact; none where tips are relieved."""
+        (start, end), inner = self.pair.path_of_contact, self.pressures.moving.inner_path
+        return [(low, high) for low, high in ((start, inner[0]), (inner[1], end)) if high - low > NO_ZONE]
+
+    @cached_property
+    def is_above(self) -> bool:
+        """Whether a colour lies above the pressure scale, which only what is not fitted can."""
+        return any(np.any(_shown(cut) > self.top) for cut in self.pressures.moving.cuts)
+
     def animation(self) -> bytes:
         """GIF of a mesh period; it repeats without a seam once the motion is steady."""
         with styled():
@@ -58,17 +72,18 @@ class FieldOfAction:
         field, force = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
         self._lines(field, self.pressures.moving.cuts[k])
         scale = ScalarMappable(Normalize(0.0, self.top), PRESSURE_MAP)
-        figure.colorbar(scale, ax=field, label="peak pressure [MPa]", extend="max")
+        extend = "max" if self.is_above else "neither"
+        figure.colorbar(scale, ax=field, label="peak pressure [MPa]", extend=extend)
         self._force(force, k)
-        foot(figure, f"Left: field of action; contact lines move to the right, tip-edge zones are grey; {ABOVE}.")
+        grey, blue = ["tip-edge zones are grey"] * bool(self.zones), [ABOVE] * self.is_above
+        foot(figure, "; ".join(["Left: field of action; contact lines move to the right", *grey, *blue]) + ".")
         return figure
 
     def _lines(self, axes: Axes, cut: Slices) -> None:
         """Slices at their roll distances, as wide as their layer."""
         start, end = self.pair.path_of_contact
         half = 0.5 * self.pair.face_width
-        inner = self.pressures.moving.inner_path
-        for low, high in ((start, inner[0]), (inner[1], end)):
+        for low, high in self.zones:
             axes.axvspan(low, high, color=FAINT, alpha=0.25, lw=0.0)
         axes.axvline(0.0, color=FAINT, lw=0.8, ls="--")
         widths = cut.width if len(np.unique(cut.z)) > 1 else np.full(len(cut.z), 2.0 * half)
@@ -77,8 +92,7 @@ class FieldOfAction:
             [(ξ - 0.5 * slope * w, z - 0.5 * w), (ξ + 0.5 * slope * w, z + 0.5 * w)]
             for ξ, z, w in zip(cut.roll_distance, cut.z, widths)
         ]
-        values = np.where(np.isfinite(peaks := pooled_peaks(cut)), peaks, cut.largest)
-        lines = LineCollection(ends, array=values, cmap=PRESSURE_MAP, norm=Normalize(0.0, self.top), lw=7.0)
+        lines = LineCollection(ends, array=_shown(cut), cmap=PRESSURE_MAP, norm=Normalize(0.0, self.top), lw=7.0)
         lines.set_capstyle("butt")
         axes.add_collection(lines)
         axes.set(xlim=(start, end), ylim=(-half, half), xlabel="path of contact from the pitch point [mm]",
@@ -92,3 +106,8 @@ class FieldOfAction:
         axes.axhline(1.0, color=INK, lw=0.8, ls="--")
         axes.set(xlabel="rotation of the pinion [°]", ylabel="mesh force over load")
         axes.set_ylim(min(0.0, float(self.force.min())), 1.1 * max(1.0, float(self.force.max())))
+
+
+def _shown(cut: Slices) -> Floats:
+    """Pressures (n,) by which slices are coloured [MPa]: fitted peaks, the largest ones where none could be fitted."""
+    return np.where(np.isfinite(peaks := pooled_peaks(cut)), peaks, cut.largest)

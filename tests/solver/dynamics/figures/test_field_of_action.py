@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from PIL import Image
 
 from evolvent.dynamics.figures.field_of_action import FieldOfAction
@@ -38,6 +40,11 @@ def field(file: str) -> FieldOfAction:
     return FieldOfAction(run.scene.title, run.pair, CasePressures(case, still, still))
 
 
+def words(figure: Figure) -> str:
+    """Beside the panels."""
+    return " ".join(text.get_text() for text in figure.texts)
+
+
 @pytest.mark.parametrize("file", FILES)
 def test_lines_lie_where_the_slices_are(file: str) -> None:
     """A stroke for each slice, about its roll distance and height, with its peak pressure; strokes are parallel to the
@@ -64,6 +71,28 @@ def test_force_has_a_dot_at_the_position() -> None:
     for k, force in enumerate(drawn.force):
         dot = drawn.figure(k).axes[1].lines[1]
         assert np.asarray(dot.get_ydata()).tolist() == [force]
+
+
+def test_the_foot_names_what_is_drawn() -> None:
+    """Zones of 1 mm at both tip edges: both are grey, and the foot says so. Relieved tips, without zones: no grey, and
+    not a word of it. Blue is named where a slice lies above the scale alone."""
+    drawn = field(FILES[1])
+    path, still = drawn.pair.path_of_contact, drawn.pressures.still
+
+    def with_inner(path: tuple[float, float]) -> FieldOfAction:
+        own = replace(still, inner_path=path)
+        return replace(drawn, pressures=CasePressures(drawn.pressures.case, own, own))
+
+    for each, count in ((with_inner((path[0] + 1.0, path[1] - 1.0)), 2), (with_inner(path), 0)):
+        figure = each.figure(0)
+        foot = words(figure)
+        assert len(figure.axes[0].patches) == count
+        assert ("grey" in foot) == bool(count)
+        assert ("blue" in foot) == each.is_above
+    loud = replace(drawn, pressures=replace(drawn.pressures, moving=replace(still, cuts=tuple(
+        replace(cut, largest=np.full(len(cut.largest), 1e6), peak=np.full(len(cut.largest), np.nan))
+        for cut in still.cuts))))  # fmt: skip
+    assert loud.is_above and "blue" in words(loud.figure(0))
 
 
 def test_animation_has_a_frame_a_position() -> None:

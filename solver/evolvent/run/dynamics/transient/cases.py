@@ -145,7 +145,7 @@ class PairCases:
     ) -> dict[int, MeshPeriods]:  # fmt: skip
         """Cases that are kept and those that are solved, on rank 0. solved: by number, transient and its start. stage:
         to be shown."""
-        known = together(self.comm, lambda: kept.read(len(self.tasks)) if self.comm.rank == 0 else {})
+        known = together(self.comm, lambda: kept.read() if self.comm.rank == 0 else {})
         ended = self.comm.bcast(set(known))
         missing = [number for number in range(len(self.tasks)) if number not in ended]
 

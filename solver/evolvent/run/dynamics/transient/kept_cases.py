@@ -1,8 +1,12 @@
 """Cases of a transient on disk: a call that was stopped goes on with those that are missing.
 
-    OUT/results/transient_static.npz   the positions without inertia, at each friction coefficient
-    OUT/results/transient_0003.npz     a speed and friction coefficient whose motion has ended
+    OUT/results/transient_static.npz       the positions without inertia, at each friction coefficient
+    OUT/results/transient_1500rpm_0.npz    a speed whose motion has ended, at the first friction coefficient
     OUT/results/transient_coarse_*.npz, transient_finer_*.npz     the same of the companion that gives the error bars
+
+Statics and cases depend on the scene but for its list of speeds, to which more can be added. By default cases depend on
+the highest speed, too: time steps at it say which natural modes move (`dynamics.transient.driven_pair`). They depend on
+all friction coefficients, as the damping is that of the statics at the first one.
 
 A case is written when it ends, by the rank that computed it. Ranks write files of their own; the list of files in the
 folder takes each one's line whole.
@@ -25,10 +29,11 @@ from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import ArchiveError, arrays_bytes, fingerprint, read_arrays
 from evolvent.results.archive.position_arrays import archived_result, result_arrays
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.gears.pair import GearPair
 
-KEPT_STATIC, KEPT_CASES = "results/transient_static.npz", "results/transient_*.npz"
 COARSE, FINER_STEPS = "_coarse", "_finer"
 """Kinds of cases: those of the companion, in the time steps of the scene and in shorter ones."""
 BEGINNING = "beginning/"
@@ -44,7 +49,11 @@ class KeptCases:
     folder: RunFolder
     """Where the call writes."""
     identity: str
-    """Of the scene: all that its results depend on."""
+    """Of all in the scene that a case depends on."""
+    static_identity: str
+    """The same of the statics."""
+    names: tuple[str, ...]
+    """Of the cases by their numbers, every speed at every friction coefficient."""
     pair: GearPair
     """The gears."""
     kind: str = ""
@@ -52,25 +61,32 @@ class KeptCases:
 
     @staticmethod
     def of(scene: Scene, pair: GearPair, out: Path, kind: str = "") -> KeptCases:
-        """Below OUT. kind: empty for those that are reported, else `COARSE` or `FINER_STEPS`."""
-        return KeptCases(RunFolder(out), fingerprint(scene), pair, kind)
+        """Below OUT. scene: with a section [transient]. kind: empty for those that are reported, else `COARSE` or
+        `FINER_STEPS`."""
+        section = transient_section(scene)
+        names = [f"{speed:.17g}rpm_{i}" for speed in section.speeds_rpm for i in range(len(scene.contact.friction))]
+        highest = (max(section.speeds_rpm),) if section.modes_per_harmonic is None else ()
+        identities = _fingerprint(scene, section, highest), _fingerprint(scene, section, ())
+        return KeptCases(RunFolder(out), *identities, tuple(names), pair, kind)
 
     def read_static(self) -> Statics | None:
         """None where there are none. Raises ArchiveError."""
         path = self.folder.out / self._name("static")
-        return self._read(path, self._static) if path.exists() else None
+        return self._read(path, self.static_identity, self._static) if path.exists() else None
 
     def write_static(self, static: Statics) -> None:
         """Keeps the positions without inertia. Raises WriteError, FolderError."""
         arrays: dict[str, Any] = {"count": len(static)}
         for i, results in enumerate(static):
             arrays |= _positions_arrays(results, f"{i}/")
-        self._write(self._name("static"), arrays)
+        self._write(self._name("static"), self.static_identity, arrays)
 
-    def read(self, count: int) -> dict[int, MeshPeriods]:
-        """Number of a case that has ended, of `count` -> its motion. Raises ArchiveError."""
-        paths = {number: self.folder.out / self._name(f"{number:04d}") for number in range(count)}
-        return {number: self._read(path, self._periods) for number, path in paths.items() if path.exists()}
+    def read(self) -> dict[int, MeshPeriods]:
+        """Number of a case that has ended -> its motion. Raises ArchiveError."""
+        paths = {number: self.folder.out / self._name(name) for number, name in enumerate(self.names)}
+        return {
+            number: self._read(path, self.identity, self._periods) for number, path in paths.items() if path.exists()
+        }
 
     def write(self, number: int, found: MeshPeriods) -> None:
         """Keeps a case. Raises WriteError, FolderError."""
@@ -78,7 +94,7 @@ class KeptCases:
             "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
             "residuals": astuple(found.residuals), "lowest_error": found.lowest_error,
         }  # fmt: skip
-        self._write(self._name(f"{number:04d}"), arrays)
+        self._write(self._name(self.names[number]), self.identity, arrays)
 
     def _name(self, what: str) -> str:
         return f"results/transient{self.kind}_{what}.npz"
@@ -102,12 +118,13 @@ class KeptCases:
     def _positions(self, arrays: dict[str, Any], start: str) -> list[PositionResult]:
         return [archived_result(arrays, f"{start}{k}/", self.pair) for k in range(int(arrays[f"{start}positions"]))]
 
-    def _read(self, path: Path, made: Callable[[dict[str, Any]], T]) -> T:
+    def _read(self, path: Path, identity: str, made: Callable[[dict[str, Any]], T]) -> T:
         arrays = read_arrays(path)
-        if str(arrays.get("identity")) != self.identity:
+        if str(arrays.get("identity")) != identity:
             raise ArchiveError(
                 f"{path}: wanted a result of this scene, found that of another one; --resume goes on with the scene "
-                "and the settings that it was called with, --out names another folder, --overwrite computes anew"
+                "and the settings that it was called with, to which lower speeds may be added, with "
+                "transient.modes_per_harmonic higher ones, too; --out names another folder, --overwrite computes anew"
             )
         try:
             return made(arrays)
@@ -117,8 +134,13 @@ class KeptCases:
                 "computes anew"
             ) from missing
 
-    def _write(self, name: str, arrays: dict[str, Any]) -> None:
-        self.folder.write(name, arrays_bytes({"identity": self.identity, **arrays}))
+    def _write(self, name: str, identity: str, arrays: dict[str, Any]) -> None:
+        self.folder.write(name, arrays_bytes({"identity": identity, **arrays}))
+
+
+def _fingerprint(scene: Scene, section: TransientSection, speeds: tuple[float, ...]) -> str:
+    """Of the scene with these speeds."""
+    return fingerprint(scene.model_copy(update={"transient": section.model_copy(update={"speeds_rpm": speeds})}))
 
 
 def _steps(accepted: float, rejected: float, *others: float) -> StepsTaken:

@@ -73,14 +73,14 @@ def test_kept_cases_have_their_steps(out: Path, monkeypatch: pytest.MonkeyPatch,
     """What is read of an ended case has the steps of transient.json, as whole numbers; --resume where nothing is
     missing writes the same tables, byte for byte. Another tolerance is another scene."""
     cases = KeptCases.of(scene(), scene().gear_pair(), out)
-    for number, (fact, found) in enumerate(zip(facts(out), cases.read(2).values(), strict=True)):
+    for number, (fact, found) in enumerate(zip(facts(out), cases.read().values(), strict=True)):
         steps = found.steps
         assert isinstance(steps.accepted, int) and isinstance(steps.rejected, int)
         assert (steps.accepted, steps.rejected) == (fact["time_steps"], fact["rejected_steps"])
         assert (steps.shortest, steps.error) == (fact["shortest_step_s"], fact["step_error"])
         again = KeptCases.of(scene(), cases.pair, tmp_path)
         again.write(number, found)
-        assert [moment.steps for moment in again.read(2)[number].moments] == [moment.steps for moment in found.moments]
+        assert [moment.steps for moment in again.read()[number].moments] == [moment.steps for moment in found.moments]
     assert KeptCases.of(scene("transient.tolerance=0.005"), cases.pair, out).identity != cases.identity
     before = [(out / name).read_bytes() for name in TABLES]
     monkeypatch.setattr(module, "until_steady", None)

@@ -96,7 +96,7 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(module, "until_steady", counted)
     with pytest.raises(Killed):
         run_transient(scene(), tmp_path, quiet=True)
-    assert kept(tmp_path) == ["transient_0000.npz", "transient_static.npz"]
+    assert kept(tmp_path) == ["transient_2000rpm_0.npz", "transient_static.npz"]
     with pytest.raises(FolderError, match=r"found results/transient_static\.npz of an earlier call"):
         run_transient(scene(), tmp_path, quiet=True)
     with pytest.raises(ArchiveError, match="found that of another one"):
@@ -104,8 +104,8 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
     with pytest.raises(Killed):
         run_transient(scene(), tmp_path, resume=True, quiet=True)
     assert kept(tmp_path) == [
-        "transient_0000.npz", "transient_0001.npz", "transient_coarse_static.npz", "transient_finer_0000.npz",
-        "transient_finer_0001.npz", "transient_static.npz",
+        "transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_coarse_static.npz",
+        "transient_finer_2000rpm_0.npz", "transient_finer_2000rpm_1.npz", "transient_static.npz",
     ]  # fmt: skip
     monkeypatch.setattr(module, "sweep_until_periodic", None)
     said = run_transient(scene(), tmp_path, resume=True, quiet=True)
@@ -119,8 +119,8 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
 def test_overwriting_begins_anew(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Statics and cases of an earlier call are gone before anything is computed."""
     earlier = KeptCases.of(scene(), scene().gear_pair(), tmp_path)
-    earlier.write(1, KeptCases.of(scene(), earlier.pair, out).read(2)[1])
-    assert kept(tmp_path) == ["transient_0001.npz"]
+    earlier.write(1, KeptCases.of(scene(), earlier.pair, out).read()[1])
+    assert kept(tmp_path) == ["transient_2000rpm_1.npz"]
     monkeypatch.setattr(module, "sweep_until_periodic", stopped)
     with pytest.raises(Killed):
         run_transient(scene(), tmp_path, overwrite=True, quiet=True)
@@ -131,7 +131,7 @@ def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypa
     """Of a call without them nothing is computed again but the companion; the tables are those of a call with them.
     """
     run_transient(scene("output.error_bars=false"), tmp_path, quiet=True)
-    assert kept(tmp_path) == ["transient_0000.npz", "transient_0001.npz", "transient_static.npz"]
+    assert kept(tmp_path) == ["transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_static.npz"]
     assert not same_tables(tmp_path, out)
     counts: list[int] = []
     solved = module.until_steady
@@ -146,6 +146,49 @@ def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypa
     assert same_tables(tmp_path, out)
 
 
+@pytest.mark.parametrize(
+    ("modes", "speeds", "more"),
+    [((), (2000,), (900, 2000)), (("transient.modes_per_harmonic=1",), (2000,), (2000, 2600))],
+)
+def test_speeds_that_are_added_later(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, modes: tuple[str, ...], speeds: tuple[int, ...],
+    more: tuple[int, ...],
+) -> None:  # fmt: skip
+    """A lower speed before the first one; a higher one where the modes do not follow from it: that one alone is
+    computed, without its statics, and the tables are those of one call with both speeds."""
+
+    def of(each: tuple[int, ...]) -> Scene:
+        few = ("contact.friction=0", "output.error_bars=false", "transient.mesh_periods=3", *modes)
+        return scene(*few, f"transient.speeds_rpm={list(each)}")
+
+    whole, grown = tmp_path / "whole", tmp_path / "grown"
+    run_transient(of(more), whole, quiet=True)
+    run_transient(of(speeds), grown, quiet=True)
+    counts: list[str] = []
+    solved = module.until_steady
+
+    def counted(*given: Any) -> MeshPeriods:
+        counts.append(given[0].name)
+        return solved(*given)
+
+    monkeypatch.setattr(module, "until_steady", counted)
+    monkeypatch.setattr(module, "sweep_until_periodic", None)
+    run_transient(of(more), grown, resume=True, quiet=True)
+    assert len(counts) == 1 and str(*(set(more) - set(speeds))) in counts[0]
+    assert same_tables(grown, whole)
+
+
+def test_a_higher_speed_resolves_other_modes(out: Path, tmp_path: Path) -> None:
+    """By default the natural modes follow from the highest speed: kept cases are not those of the longer list, and the
+    message says what may be added."""
+    earlier = KeptCases.of(scene(), scene().gear_pair(), out)
+    faster = KeptCases.of(scene("transient.speeds_rpm=[2000,2600]"), earlier.pair, out)
+    with pytest.raises(ArchiveError, match="lower speeds may be added"):
+        faster.read()
+    assert faster.read_static() is not None
+    assert sorted(KeptCases.of(scene("transient.speeds_rpm=[900,2000]"), earlier.pair, out).read()) == [2, 3]
+
+
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
     """The call begins from the start, with a sentence."""
     few = scene("contact.friction=0", "transient.mesh_periods=2")
@@ -156,15 +199,15 @@ def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
 def test_a_case_that_cannot_be_read_is_refused(out: Path, tmp_path: Path) -> None:
     """One of another version lacks an array: it is named, with --overwrite."""
     cases = KeptCases.of(scene(), scene().gear_pair(), tmp_path)
-    found = KeptCases.of(scene(), cases.pair, out).read(4)
+    found = KeptCases.of(scene(), cases.pair, out).read()
     assert sorted(found) == [0, 1]
     cases.write(0, found[0])
-    path = tmp_path / "results/transient_0000.npz"
+    path = tmp_path / "results/transient_2000rpm_0.npz"
     arrays = read_arrays(path)
     del arrays["energies"]
     path.write_bytes(arrays_bytes(arrays))
     with pytest.raises(ArchiveError, match="one without 'energies'; --overwrite computes anew"):
-        cases.read(1)
+        cases.read()
 
 
 @pytest.mark.mpi
@@ -178,9 +221,9 @@ def test_ranks_go_on(run_script: Run, tmp_path: Path, ranks: int) -> None:
     done = run_script("-c", WHOLE, *words, "--out", str(whole), ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
     assert run_script("-c", STOPPED, *words, "--out", str(cut), ranks=ranks).returncode != 0
-    assert kept(cut) == ["transient_0000.npz", "transient_static.npz"]
-    before = (cut / "results/transient_0000.npz").stat().st_mtime_ns
+    assert kept(cut) == ["transient_2000rpm_0.npz", "transient_static.npz"]
+    before = (cut / "results/transient_2000rpm_0.npz").stat().st_mtime_ns
     done = run_script("-c", WHOLE, *words, "--out", str(cut), "--resume", ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
-    assert (cut / "results/transient_0000.npz").stat().st_mtime_ns == before
+    assert (cut / "results/transient_2000rpm_0.npz").stat().st_mtime_ns == before
     assert same_tables(cut, whole)

@@ -137,7 +137,7 @@ def test_a_motion_out_of_balance_ends_the_run(tmp_path: Path, monkeypatch: pytes
         words += ["--set", setting]
     assert main(words) == Unbalanced.exit_status == 3
     assert not (tmp_path / "transient.csv").exists()
-    assert not list((tmp_path / "results").glob("transient_0*.npz"))
+    assert not list((tmp_path / "results").glob("transient_*rpm_*.npz"))
 
 
 def test_statics_out_of_balance_end_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -137,7 +137,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "strength.standard",
         "strength.fatigue", "strength",
     ),
-    "strength.figures": ("meshes.gears", "results.drawing", "strength.fatigue", "strength.results"),
+    "strength.figures": ("meshes", "meshes.gears", "results.drawing", "strength.fatigue", "strength.results"),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep", "gears.solution",
         "dynamics", "dynamics.results.*", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",

@@ -7,6 +7,8 @@ import math
 ENOUGH_STEPS = 20.0
 """A period of the pair's own vibration: the method's period is 1.1 % too long then, with eight steps 6.4 %
 (ρ_∞ = 0.8, without damping), more than a resonance is wide."""
+SEEN_STEPS = 8.0
+"""Points a period that see a vibration: they miss its peak by up to 8 % of its amplitude."""
 MOST_POSITIONS = 1000
 """Of a mesh period, that a scene may have."""
 
@@ -27,7 +29,32 @@ def unresolved(speed: float, natural: float, steps: float, positions: int) -> st
             f"sweep.positions = {math.ceil(wanted)} resolves it, transient.spectral_radius = 0 leaves statics where "
             "that is too many"
         )
+    return f"{_few(speed, natural, steps, 'time steps')}: what the mesh excites of it is not resolved; {remedy}"
+
+
+def unresolved_within(speed: float, natural: float, steps: float, tolerance: float) -> str:
+    """The same of steps that a tolerance divides: vibration below the tolerance is smeared. steps: in the mean."""
+    if steps >= ENOUGH_STEPS:
+        return ""
     return (
-        f"{speed:g} r/min: the pair's own vibration of {natural:.0f} Hz has {steps:.2g} time steps a period; wanted "
-        f"{ENOUGH_STEPS:g}: what the mesh excites of it is not resolved; {remedy}"
+        f"{_few(speed, natural, steps, 'time steps')}: transient.tolerance = {tolerance:g} lets what the mesh excites "
+        "of it be smeared; lower it, or raise sweep.positions"
+    )
+
+
+def unseen(speed: float, natural: float, positions: float) -> str:
+    """That the tables, which have the positions alone, may miss peaks between them; empty where they do not.
+    positions: in a period of the pair's own vibration."""
+    if positions >= SEEN_STEPS:
+        return ""
+    return (
+        f"{_few(speed, natural, positions, 'positions', SEEN_STEPS)}: the tables, and peak_to_peak_um and pressures from them, "
+        "may miss peaks between positions, dynamic_factor does not; raise sweep.positions"
+    )
+
+
+def _few(speed: float, natural: float, count: float, what: str, wanted: float = ENOUGH_STEPS) -> str:
+    return (
+        f"{speed:g} r/min: the pair's own vibration of {natural:.0f} Hz has {count:.2g} {what} a period; wanted "
+        f"{wanted:g}"
     )

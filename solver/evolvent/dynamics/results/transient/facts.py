@@ -10,7 +10,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from evolvent.dynamics.resolved_vibration import ENOUGH_STEPS, unresolved
+from evolvent.dynamics.resolved_vibration import ENOUGH_STEPS, SEEN_STEPS, unresolved, unresolved_within, unseen
 from evolvent.dynamics.results.transient.beginning import StartErrors
 from evolvent.dynamics.results.transient.cases import UM, CasePressures
 from evolvent.dynamics.results.transient.compared import FINER
@@ -22,8 +22,6 @@ from evolvent.results.tables.tables import without_nan
 from evolvent_meshes.arrays import Floats
 
 TRANSIENT_FACTS = "transient.json"
-SEEN_STEPS = 8.0
-"""Of shorter steps a period: error bars from fewer see nothing of the vibration."""
 
 
 @dataclass(frozen=True)
@@ -169,12 +167,21 @@ def sentences(facts: Sequence[TransientFacts], positions: int, tolerance: float 
         if not fact.steady
     ]
     if tolerance is not None:
-        return unsteady + [_beyond(fact, tolerance) for fact in facts if fact.step_error > tolerance]
+        beyond = [_beyond(fact, tolerance) for fact in facts if fact.step_error > tolerance]
+        divided = {fact.speed_rpm: _coarse(fact, positions, tolerance) for fact in facts}
+        return [*unsteady, *beyond, *filter(None, divided.values())]
     coarse = {fact.speed_rpm: fact for fact in facts if fact.steps_per_natural_period < ENOUGH_STEPS}
     return unsteady + [
         unresolved(speed, fact.natural_frequency_Hz, fact.steps_per_natural_period, positions) + _doubt(fact)
         for speed, fact in coarse.items()
     ]
+
+
+def _coarse(fact: TransientFacts, positions: int, tolerance: float) -> str:
+    """That divided steps, or else the positions that the tables have, are too far apart; empty where they are not."""
+    speed, natural = fact.speed_rpm, fact.natural_frequency_Hz
+    seen = positions * fact.mesh_frequency_Hz / natural
+    return unresolved_within(speed, natural, fact.steps_per_natural_period, tolerance) or unseen(speed, natural, seen)
 
 
 def _beyond(fact: TransientFacts, tolerance: float) -> str:

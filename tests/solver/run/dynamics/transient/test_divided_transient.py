@@ -42,11 +42,21 @@ def rows(path: Path) -> list[list[float]]:
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Of the motions nothing has to be said: they are steady, the tolerance is reached."""
+    """Of the motions nothing has to be said: they are steady, the tolerance is reached. Of the tables, that 4.5
+    positions lie in a period of the pair's own vibration, once a speed."""
     folder = tmp_path_factory.mktemp("divided")
-    (said,) = run_transient(scene(), folder, quiet=True)
+    seen, said = run_transient(scene(), folder, quiet=True)
+    assert "4.5 positions a period; wanted 8: the tables" in seen
     assert "elements across the contact" in said
     return folder
+
+
+def test_a_coarse_tolerance_is_named(tmp_path: Path) -> None:
+    """A tolerance that nothing exceeds: 4.5 time steps in a period of the pair's own vibration are too few, and it is
+    the tolerance that allows them."""
+    said = run_transient(scene("transient.tolerance=0.5", "contact.friction=0"), tmp_path, quiet=True)
+    (coarse,) = (each for each in said if each.startswith("2000 r/min: "))
+    assert "4.5 time steps a period; wanted 8: transient.tolerance = 0.5 lets" in coarse
 
 
 def test_facts_say_how_steps_are_divided(out: Path) -> None:
@@ -91,10 +101,11 @@ def test_kept_cases_have_their_steps(out: Path, monkeypatch: pytest.MonkeyPatch,
 def test_a_tolerance_that_is_not_reached_is_named(tmp_path: Path) -> None:
     """Halves at most, and a tolerance of a millionth: a sentence has the error, the length and what to do."""
     few = scene("transient.tolerance=1e-6", "transient.most_parts=2", "contact.friction=0", "transient.mesh_periods=2")
-    unsteady, beyond, _ = run_transient(few, tmp_path, quiet=True)
+    unsteady, beyond, seen, _ = run_transient(few, tmp_path, quiet=True)
     (fact,) = facts(tmp_path)
     assert "not steady" in unsteady
     assert "2000 r/min, μ = 0: wanted an error of a time step of at most transient.tolerance = 1e-06" in beyond
+    assert "4.5 positions a period" in seen
     assert "raise transient.most_parts or the tolerance" in beyond
     assert fact["time_steps"] == 2 * POSITIONS
     assert fact["step_error"] > 1e-6

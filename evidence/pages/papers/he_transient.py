@@ -34,6 +34,8 @@ SETTINGS = "mesh.level=quick", "sweep.positions=80", "output.error_bars=false", 
 WAYS = {"up": "running up", "down": "running down"}
 BORES = 36, 40, 70, 100
 """mm."""
+RESOLVING, STEPS = 2200, (16, 20, 40, 80)
+"""r/min near a superharmonic, and time steps a mesh period there."""
 OWN_INERTIA = "own_inertia.toml"
 """The scene with the inertia of the gears as drawn, which changes with the bore."""
 
@@ -51,6 +53,10 @@ def figures(runs: Runs) -> Named:
     for speed, fact in zip(SPEEDS, _transient(runs, "scaled", _at(scaled))):
         yield from _motion(f"scaled_{speed}", fact)
     yield from _bores(runs)
+    for positions in STEPS:
+        (fact,) = _transient(runs, f"steps_{positions}", _at([RESOLVING]), f"sweep.positions={positions}")
+        yield from _motion(f"steps_{positions}", fact)
+        yield f"steps_{positions}_a_period", fact["steps_per_natural_period"]
     for count in COUNTS:
         (fact,) = _transient(runs, f"count_{count}", f"transient.speeds_rpm=[{CONVERGED}]",
                              f"transient.modes_per_harmonic={count}", "transient.steady_change=0.0005")  # fmt: skip
@@ -159,6 +165,14 @@ def _steady(f: dict[str, float], speed: int) -> str:
 def _ratio(f: Mapping[str, float]) -> float:
     """Natural speed with modes over that without."""
     return f["modes_natural_rpm"] / f["rigid_natural_rpm"]
+
+
+def steps_table(docs: Path) -> str:
+    """The motion at one speed over the time steps."""
+    f = kept.kept(docs / KEPT, COMMAND)
+    rows = [(f"{n}", f"{f[f'steps_{n}_a_period']:.1f}", *_cell(f, f"steps_{n}").split(", ", 1)) for n in STEPS]
+    head = "time steps a mesh period", "in a period of the pair's own", "peak to peak", "largest mesh force over load"
+    return markdown(head, rows)
 
 
 def bores_table(docs: Path) -> str:

@@ -48,8 +48,8 @@ def unseen(speed: float, natural: float, positions: float) -> str:
     if positions >= SEEN_STEPS:
         return ""
     return (
-        f"{_few(speed, natural, positions, 'positions', SEEN_STEPS)}: the tables, and peak_to_peak_um and pressures from them, "
-        "may miss peaks between positions, dynamic_factor does not; raise sweep.positions"
+        f"{_few(speed, natural, positions, 'positions', SEEN_STEPS)}: the tables, and peak_to_peak_um and "
+        "pressures from them, may miss peaks between positions, dynamic_factor does not; raise sweep.positions"
     )
 
 

@@ -67,7 +67,7 @@ class StartErrors:
     pressure: Floats
     """(n,) [MPa]."""
     largest_force: float
-    """Of the largest mesh force [N; N/mm in 2D]."""
+    """Of the largest mesh force of all time steps [N; N/mm in 2D]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +99,11 @@ class Beginning:
         return Curve(self.angle, np.array([moment.mesh_force for moment in self.found.beginning]))
 
     @property
+    def largest_force(self) -> Curve:
+        """Of the time steps up to each position [N; N/mm in 2D]."""
+        return Curve(self.angle, np.array([moment.steps.largest_force for moment in self.found.beginning]))
+
+    @property
     def pressure(self) -> Curve:
         """Fitted [MPa]."""
         return self._since(self.curves.fitted.positions)
@@ -127,9 +132,10 @@ def start_errors(own: Beginning, order: int, motions: tuple[Beginning, Beginning
     every = (own, *motions)
     error = Compared(STIFFNESS_FACTOR[order], *(each.transmission_error for each in every))
     force = Compared(VARYING_FACTOR[order], *(each.mesh_force for each in every))
+    largest = Compared(VARYING_FACTOR[order], *(each.largest_force for each in every))
     peaks = Compared(LOAD_FACTOR[order], *(each.line_loads for each in every))
     pressure = each_apart(own.pressure, own.hertz) + peaks.of_each()
-    return StartErrors(UM * error.of_each(), force.of_each(), pressure, force.of_figure(np.max))
+    return StartErrors(UM * error.of_each(), force.of_each(), pressure, largest.of_figure(np.max))
 
 
 def beginnings(

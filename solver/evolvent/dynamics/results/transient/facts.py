@@ -83,7 +83,7 @@ class TransientFacts:
     start_dynamic_factor: float | None
     """The same of the first two mesh periods from rest; null for a motion that begins with statics."""
     start_dynamic_factor_error: float | None
-    """Its estimated error, at the positions; null likewise."""
+    """Its estimated error by mesh, modes and time steps; null likewise."""
     separated: float
     """Share of the positions at which nothing touches."""
     max_pressure_MPa: float

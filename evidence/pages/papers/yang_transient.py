@@ -1,14 +1,13 @@
 """`python -m evidence.pages.papers.yang_transient --out DIR`: Yang's pair at both speeds, for docs/yang2022.md.
 
-At 1500 and 3000 r/min and seven friction coefficients: under a constant torque on the pinion, both gears free, and as
-the paper drives the pair, at a constant speed of the pinion under a torque on the wheel; and its start from rest. Runs
-that an earlier call has ended are read again. `python -m evidence.pages` then writes the page.
+At 1500 and 3000 r/min and seven friction coefficients, as the paper drives the pair: the pinion at constant speed, a
+torque on the wheel; and from rest (yang_start.py). Runs that an earlier call has ended are read again. `python -m
+evidence.pages` then writes the page.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from shutil import copy
 from typing import Any
@@ -26,81 +25,69 @@ from evidence.tables import markdown
 KEPT = "yang2022/transient.csv"
 COMMAND = "python -m evidence.pages.papers.yang_transient --out DIR"
 SPEEDS, LOW, HIGH = (1500, 3000), 0.07, 0.3
-PLAIN = "output.animation=false", "output.error_bars=false"
 FRICTIONS = 0.07, 0.08, 0.11, 0.12, 0.15, 0.2, 0.3
 
 
-@dataclass(frozen=True)
-class Way:
-    """How the pair is driven."""
-
-    words: str
-    """In the table."""
-    settings: tuple[str, ...]
-    """Of the scene."""
-
-
-WAYS = {
-    "pinion": Way("torque on the pinion, both gears free; 20 time steps a mesh period, all inertia at the bores", (
-        "transient.drive=free", "transient.modes_per_harmonic=0", f"contact.friction={list(FRICTIONS)}",
-    )),
-    "wheel": Way("torque on the wheel, the pinion at constant speed, as in the paper; 60 steps, 77 natural modes", (
-        "load.on=wheel", "load.torque_Nm=882.353", "transient.drive=constant_speed", "sweep.positions=60",
-        f"contact.friction={list(FRICTIONS)}",
-    )),
-}  # fmt: skip
-"""By the gear that holds the torque."""
+DRIVE = (
+    "load.on=wheel", "load.torque_Nm=882.353", "transient.drive=constant_speed", "sweep.positions=60",
+)  # fmt: skip
+"""The torque on the wheel that 250 N·m on the pinion balance."""
 PICTURE = "yang2022/at_speed.png"
+
+
+def command(*settings: str) -> list[object]:
+    """`evolvent transient` of the scene on level quick."""
+    set_to = [f"--set={each}" for each in (*DRIVE, *settings, "output.animation=false", "output.error_bars=false")]
+    return [*module_run("evolvent", "transient", DEMOS / "yang2022.toml", "--level", "quick", "--overwrite",
+                        "--quiet", *set_to)]  # fmt: skip
 
 
 def figures(runs: Runs) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
-    for on, way in WAYS.items():
-        speeds = f"transient.speeds_rpm={list(SPEEDS)}"
-        set_to = [f"--set={each}" for each in (*way.settings, speeds, *PLAIN)]
-        words = module_run("evolvent", "transient", DEMOS / "yang2022.toml", "--level", "quick", "--overwrite",
-                           "--quiet", *set_to)  # fmt: skip
-        folder, cost = runs.ended(on, "transient.json", *words)
-        facts = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
-        yield f"{on}_minutes", cost.cpu / 60.0
-        yield from _of_cases(on, facts)
-        yield from _of_teeth(on, folder)
+    words = command(f"transient.speeds_rpm={list(SPEEDS)}", f"contact.friction={list(FRICTIONS)}")
+    folder, cost = runs.ended("wheel", "transient.json", *words)
+    facts = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
+    yield "wheel_minutes", cost.cpu / 60.0
+    yield from _of_cases(facts)
+    yield from _of_teeth(folder)
     copy(folder / "pictures/transient.png", DOCS / PICTURE)
-    yield from yang_start.figures(facts[0])
+    yield from yang_start.figures(runs, command)
 
 
-def _of_cases(on: str, facts: list[dict[str, Any]]) -> Named:
+def _of_cases(facts: list[dict[str, Any]]) -> Named:
     """What inertia changes at each speed."""
     for speed in SPEEDS:
         own = [fact for fact in facts if fact["speed_rpm"] == speed]
-        yield f"{on}_{speed}_periods", max(fact["mesh_periods"] for fact in own)
-        yield f"{on}_{speed}_change_percent", 100.0 * max(fact["last_change"] for fact in own)
-        yield f"{on}_{speed}_modes", own[0]["modes"]
-        yield f"{on}_{speed}_force_percent", 100.0 * (max(fact["dynamic_factor"] for fact in own) - 1.0)
+        yield f"{speed}_periods", max(fact["mesh_periods"] for fact in own)
+        yield f"{speed}_change_percent", 100.0 * max(fact["last_change"] for fact in own)
+        yield f"{speed}_modes", own[0]["modes"]
+        yield f"{speed}_steps", own[0]["steps_per_natural_period"]
+        yield f"{speed}_order", own[0]["natural_frequency_Hz"] / own[0]["mesh_frequency_Hz"]
+        yield f"{speed}_force_percent", 100.0 * (max(fact["dynamic_factor"] for fact in own) - 1.0)
         swing = [fact["peak_to_peak_um"] / fact["static_peak_to_peak_um"] - 1.0 for fact in own]
-        yield f"{on}_{speed}_swing_least_percent", 100.0 * min(swing)
-        yield f"{on}_{speed}_swing_most_percent", 100.0 * max(swing)
+        yield f"{speed}_swing_least_percent", 100.0 * min(swing)
+        yield f"{speed}_swing_most_percent", 100.0 * max(swing)
         peaks = [fact["max_pressure_MPa"] / fact["static_max_pressure_MPa"] - 1.0 for fact in own]
-        yield f"{on}_{speed}_largest_percent", 100.0 * max(peaks, key=abs)
+        yield f"{speed}_largest_percent", 100.0 * max(peaks, key=abs)
 
 
-def _of_teeth(on: str, folder: Path) -> Named:
+def _of_teeth(folder: Path) -> Named:
     """Pressure of a tooth over its engagement: what inertia changes, and what friction does at each speed."""
     rows = read(folder / "transient_teeth.csv")
     for speed in SPEEDS:
         curves = {}
-        for friction in (LOW, HIGH):
+        for friction in FRICTIONS:
             own = [row for row in rows if (float(row["speed_rpm"]), float(row["friction"])) == (speed, friction)]
             columns = ("tooth_angle_deg", "max_pressure_MPa", "static_max_pressure_MPa")
             curves[friction] = np.array([[float(row[name]) for name in columns] for row in own])
         moved = np.concatenate([curve[:, 1] / curve[:, 2] - 1.0 for curve in curves.values()])
-        yield f"{on}_{speed}_pressure_percent", 100.0 * float(np.nanmax(np.abs(moved)))
+        yield f"{speed}_pressure_percent", 100.0 * float(np.nanmax(np.abs(moved)))
         for name, column in (("moving", 1), ("static", 2)):
-            low, high = (_known(curve, column) for curve in curves.values())
+            low, high = (_known(curves[friction], column) for friction in (LOW, HIGH))
             both = np.intersect1d(low[0], high[0])
             change = np.interp(both, *high) / np.interp(both, *low) - 1.0
-            yield f"{on}_{speed}_{name}_before_percent", 100.0 * float(np.median(change[both < -10.0]))
-            yield f"{on}_{speed}_{name}_after_percent", 100.0 * float(np.median(change[both > 10.0]))
+            yield f"{speed}_{name}_before_percent", 100.0 * float(np.median(change[both < -10.0]))
+            yield f"{speed}_{name}_after_percent", 100.0 * float(np.median(change[both > 10.0]))
 
 
 def _known(curve: np.ndarray[Any, np.dtype[np.float64]], column: int) -> tuple[Any, Any]:
@@ -114,16 +101,17 @@ def table(docs: Path) -> str:
     f = kept.kept(docs / KEPT, COMMAND)
     rows = [
         (
-            way.words, f"{speed}", f"{f[f'{on}_{speed}_periods']:.0f}", f"{f[f'{on}_{speed}_force_percent']:+.2f} %",
-            f"{f[f'{on}_{speed}_swing_least_percent']:+.1f} to {f[f'{on}_{speed}_swing_most_percent']:+.1f} %",
-            f"{f[f'{on}_{speed}_largest_percent']:+.2f} %", f"{f[f'{on}_{speed}_pressure_percent']:.1f} %",
-            f"{f[f'{on}_{speed}_moving_before_percent']:+.1f} / {f[f'{on}_{speed}_moving_after_percent']:+.1f} %",
+            f"{speed}", f"{f[f'{speed}_steps']:.0f}", f"{f[f'{speed}_order']:.1f}", f"{f[f'{speed}_periods']:.0f}",
+            f"{f[f'{speed}_force_percent']:+.2f} %",
+            f"{f[f'{speed}_swing_least_percent']:+.1f} to {f[f'{speed}_swing_most_percent']:+.1f} %",
+            f"{f[f'{speed}_largest_percent']:+.2f} %", f"{f[f'{speed}_pressure_percent']:.1f} %",
+            f"{f[f'{speed}_moving_before_percent']:+.1f} / {f[f'{speed}_moving_after_percent']:+.1f} %",
         )
-        for on, way in WAYS.items()
         for speed in SPEEDS
     ]  # fmt: skip
     head = (
-        "drive", "speed [r/min]", "mesh periods until steady", "largest mesh force over the load",
+        "speed [r/min]", "time steps in a period of the pair's own vibration", "its frequency over the mesh frequency",
+        "mesh periods until steady", "largest mesh force over the load",
         "peak-to-peak transmission error over statics", "largest pressure over statics",
         "pressure of a tooth: largest difference from statics",
         "friction, μ 0.07 to 0.30: pressure of a tooth at −25° to −10° / 10° to 30°",

@@ -35,7 +35,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "he2022.md": {
             "points": he.points(docs), "sensitivity": he.sensitivity(docs), "speeds": he_transient.speeds_table(docs),
             "modes": he_transient.modes_table(docs), "bores": he_transient.bores_table(docs),
-            "steps": he_transient.steps_table(docs),
+            "holds": he_transient.holds(docs), "steps": he_transient.steps_table(docs),
         },
         docs / "zhang2023.md": {"points": zhang.points(docs), "differences": zhang.differences(docs)},
         docs / "fatigue.md": {"friction": yang_fatigue.friction_table(docs), "fitted": yang_fatigue.fitted_table(docs)},

@@ -33,12 +33,13 @@ def unresolved(speed: float, natural: float, steps: float, positions: int) -> st
 
 
 def unresolved_within(speed: float, natural: float, steps: float, tolerance: float) -> str:
-    """The same of steps that a tolerance divides: vibration below the tolerance is smeared. steps: in the mean."""
-    if steps >= ENOUGH_STEPS:
+    """The same of steps that a tolerance divides, which are short where it matters: vibration below the tolerance is
+    smeared. steps: in the mean, of which `SEEN_STEPS` are wanted."""
+    if steps >= SEEN_STEPS:
         return ""
     return (
-        f"{_few(speed, natural, steps, 'time steps')}: transient.tolerance = {tolerance:g} lets what the mesh excites "
-        "of it be smeared; lower it, or raise sweep.positions"
+        f"{_few(speed, natural, steps, 'time steps', SEEN_STEPS)}: transient.tolerance = {tolerance:g} lets what "
+        "the mesh excites of it be smeared; lower it, or raise sweep.positions"
     )
 
 
@@ -55,6 +56,6 @@ def unseen(speed: float, natural: float, positions: float) -> str:
 
 def _few(speed: float, natural: float, count: float, what: str, wanted: float = ENOUGH_STEPS) -> str:
     return (
-        f"{speed:g} r/min: the pair's own vibration of {natural:.0f} Hz has {count:.2g} {what} a period; wanted "
+        f"{speed:g} r/min: the pair's own vibration of {natural:.0f} Hz has {count:.3g} {what} a period; wanted "
         f"{wanted:g}"
     )

@@ -10,8 +10,8 @@ from evolvent.scene.schema.errors import keys_of
 
 
 def test_the_wanted_positions_resolve_it() -> None:
-    """3 steps a period at 20 positions: 54 positions have 8.1, 53 only 7.95. With 8 nothing is said."""
-    assert "sweep.positions = 54 resolves it" in unresolved(1500.0, 3800.0, 3.0, 20)
+    """3 steps a period at 20 positions: 134 positions have 20.1, 133 only 19.95. With 20 nothing is said."""
+    assert "sweep.positions = 134 resolves it" in unresolved(1500.0, 3800.0, 3.0, 20)
     assert unresolved(1500.0, 3800.0, ENOUGH_STEPS, 20) == ""
 
 
@@ -29,5 +29,5 @@ def test_divided_steps_are_told_apart_from_the_positions_of_the_tables() -> None
     said = unresolved_within(900.0, 3624.0, 6.0, 0.03)
     assert "6 time steps a period; wanted 8: transient.tolerance = 0.03 lets" in said
     assert unresolved_within(900.0, 3624.0, 12.0, 0.01) == ""
-    assert "has 1.7 positions a period; wanted 8: the tables" in unseen(900.0, 3624.0, 1.66)
+    assert "has 1.66 positions a period; wanted 8: the tables" in unseen(900.0, 3624.0, 1.66)
     assert unseen(900.0, 3624.0, 8.0) == ""

@@ -23,8 +23,8 @@ RESOLVED = 0.25
 ROUNDING = 1e-3
 """By which the meshed body may have more inertia than the drawn one."""
 LEAST = 1
-"""Modes of each harmonic. Without any, inertia stays at the bore, and the pair's own vibration is another one: a spur
-pair has half as much transmission error again near a superharmonic (docs/he2022.md)."""
+"""Modes of each harmonic. Without any, inertia stays at the bore, and the pair's own frequency is a lower one: by
+6 % of a spur pair (docs/he2022.md)."""
 
 
 def resolved_modes(

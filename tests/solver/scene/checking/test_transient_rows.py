@@ -62,13 +62,13 @@ def test_the_gear_without_the_torque_at_constant_speed() -> None:
 
 
 def test_speeds_that_are_not_resolved_are_warned_of() -> None:
-    """13.14 steps a period at 40 positions are 7.9 at 24: then 25 resolve 1500 r/min, and faster speeds are fine; with
+    """13.14 steps a period at 40 positions are 19.7 at 60: then 61 resolve 1500 r/min, and faster speeds are fine; with
     a tolerance steps are divided, and nothing is said."""
-    assert not any(UNRESOLVED in each for each in scene_warnings(pair()))
-    (said,) = (each for each in scene_warnings(pair("sweep.positions=24")) if UNRESOLVED in each)
-    assert said.startswith("1500 r/min: ") and "has 7.9 time steps a period; wanted 8" in said
-    assert "sweep.positions = 25 " in said and "ISO 6336-1" in said
-    divided = pair("sweep.positions=24", "transient.tolerance=0.01")
+    assert not any(UNRESOLVED in each for each in scene_warnings(pair("sweep.positions=61")))
+    (said,) = (each for each in scene_warnings(pair("sweep.positions=60")) if UNRESOLVED in each)
+    assert said.startswith("1500 r/min: ") and "has 19.7 time steps a period; wanted 20" in said
+    assert "sweep.positions = 61 " in said and "ISO 6336-1" in said
+    divided = pair("sweep.positions=60", "transient.tolerance=0.01")
     assert not any(UNRESOLVED in each for each in scene_warnings(divided))
 
 

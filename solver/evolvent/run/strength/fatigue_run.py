@@ -34,17 +34,9 @@ from evolvent.scene.skips import wanted_output, with_deflected_flanks
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads, LoadedPosition
 from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS, facts_text, fatigue_facts, warnings_of
-from evolvent.strength.results.fatigue_rows import (
-    FATIGUE,
-    FATIGUE_DEPTH,
-    FATIGUE_LIFE,
-    FATIGUE_MAP,
-    FrictionFatigue,
-    depth_rows,
-    fatigue_rows,
-    life_rows,
-    map_rows,
-)
+from evolvent.strength.results.fatigue_rows import FATIGUE, FATIGUE_DEPTH, FATIGUE_LIFE, FATIGUE_MAP
+from evolvent.strength.results.fatigue_tables import depth_rows, fatigue_rows, life_rows, map_rows
+from evolvent.strength.results.friction_fatigue import FrictionFatigue
 
 AT_END = 1e-6
 """A zone that begins so near [mm] to the end of the path of contact is none."""
@@ -154,7 +146,8 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
     section = run.scene.fatigue or FatigueSection()
     found = [_fatigue(run, k, errors.bar("max_pressure_MPa", k), coarse) for k in range(len(run.frictions))]
     facts = [
-        fatigue_facts(each, _positions(run, k), run.inner_path, _materials(run)) for k, each in enumerate(found)
+        fatigue_facts(run.pair, each, _positions(run, k), run.inner_path, _materials(run))
+        for k, each in enumerate(found)
     ]
 
     def drawn() -> bytes:

@@ -10,11 +10,13 @@ from evolvent.scene.schema.errors import InputProblem, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
 
 DEPTHS = (
-    "a list of 2 to 60 ascending numbers from 0 to 10, the first 0, the last at least 0.2, in half-widths of the "
-    "contact"
+    "a list of 5 to 60 ascending numbers from 0 to 10, with 0, 0.02, 0.05 and 0.1 among them, the last at least 1, in "
+    "half-widths of the contact"
 )
-DEEP = 0.2
-"""Half-widths from which on a depth counts as below the surface."""
+NEEDED = 0.0, 0.02, 0.05, 0.1
+"""Half-widths at which tables have each criterion."""
+DEEPEST = 1.0
+"""The last depth is at least this: the largest shear stress below a line contact lies above it."""
 EXPONENTS = "a list of up to 12 different numbers from 1 to 100"
 Depth = Annotated[float, Field(ge=0, le=10)]
 Exponent = Annotated[float, Field(ge=1, le=100)]
@@ -25,7 +27,7 @@ class FatigueSection(SceneSection):
 
     depths: Annotated[tuple[Depth, ...], BeforeValidator(as_tuple)] = key(
         "depths at which criteria are evaluated, over the half-width of the contact", DEPTHS,
-        "begin with 0, the surface", min_length=2, max_length=60,
+        "begin with 0, 0.02, 0.05, 0.1", min_length=5, max_length=60,
         default=(0.0, 0.01, 0.02, 0.05, 0.1, 0.15, *(round(0.1 * k, 1) for k in range(2, 16)), 2.0, 2.5, 3.0, 4.0, 5.0),
     )  # fmt: skip
     yield_stress_MPa: float | None = key(
@@ -39,17 +41,18 @@ class FatigueSection(SceneSection):
         "a number from 0 to 2", default=0.3, ge=0, le=2,
     )  # fmt: skip
     compression_factor: float = key(
-        "the same on hydrostatic compression; as large as tension_factor it is the straight line of Dang Van, which is "
-        "not conservative below rolling contacts",
+        "the same on hydrostatic compression; at 0 the locus is constant there, at τ_w; as large as tension_factor it "
+        "is the straight line of Dang Van, which is not conservative below rolling contacts",
         "a number from 0 to 2", default=0.0, ge=0, le=2,
     )  # fmt: skip
     normal_factor: float = key(
-        "factor k on the largest tension on the plane of the criterion of Fatemi and Socie; 0.3 to 1 are usual",
+        "factor k on the largest tension on the plane of the criterion of Fatemi and Socie; the default is a choice, "
+        "tests of the material have its value",
         "a number from 0 to 5", default=1.0, ge=0, le=5,
     )  # fmt: skip
     exponents: Annotated[tuple[Exponent, ...], BeforeValidator(as_tuple)] = key(
-        "slopes m of S-N lines, N ∝ value^−m, for which lives are compared, beside those that a criterion has by its "
-        "source",
+        "slopes m, N ∝ value^−m, for which lives are compared, beside those that a criterion has by its source: a "
+        "sensitivity, as no source has S-N lines of this form for Tresca, von Mises, Dang Van or Fatemi-Socie here",
         EXPONENTS, max_length=12, default=(8.0, 10.0, 13.0),
     )  # fmt: skip
 
@@ -61,8 +64,15 @@ class FatigueSection(SceneSection):
         return exponents
 
     @model_validator(mode="after")
-    def _from_the_surface(self) -> Self:
-        rising = all(b > a for a, b in zip(self.depths, self.depths[1:]))
-        if self.depths[0] != 0.0 or self.depths[-1] < DEEP or not rising:
-            raise validation_error(InputProblem("depths", shown(self.depths), DEPTHS, "begin with 0, the surface"))
+    def _what_tables_need(self) -> Self:
+        lacking = [f"{depth:g}" for depth in NEEDED if depth not in self.depths]
+        hint = None
+        if not all(b > a for a, b in zip(self.depths, self.depths[1:])):
+            hint = "let them ascend"
+        elif lacking:
+            hint = f"add {', '.join(lacking)}, at which tables have each criterion"
+        elif self.depths[-1] < DEEPEST:
+            hint = f"go down to {DEEPEST:g} or deeper, as shear below a contact is largest at about 0.8"
+        if hint is not None:
+            raise validation_error(InputProblem("depths", shown(self.depths), DEPTHS, hint))
         return self

@@ -36,7 +36,11 @@ def dang_van(stress: Floats, tension_factor: float, compression_factor: float) -
     """max (τ_a(t) + a σ_h(t)) [MPa]: τ_a the largest shear of the deviator about the centre of the smallest sphere that
     holds its path, σ_h the hydrostatic stress (Dang Van, Cailletaud, Flavenot, Le Douaron and Lieurade, in: Biaxial and
     Multiaxial Fatigue, EGF 3, 1989, 459-478). a is one factor under tension and another under compression, where a
-    straight line is not conservative in rolling contact (Desimone, Bernasconi and Beretta, Wear 260 (2006) 567-572)."""
+    straight line is not conservative in rolling contact (Desimone, Bernasconi and Beretta, Wear 260 (2006) 567-572).
+
+    The locus breaks at σ_h = 0, where it is the fatigue limit τ_w in fully reversed torsion; with a = 3 τ_w/σ_w − 1.5
+    under tension it passes fully reversed tension too, τ_a = σ_w/2 at σ_h = σ_w/3. Another one that does is constant at
+    σ_w/2 below σ_h = σ_w/3: there it allows σ_w/2 where this one, with no factor under compression, has up to τ_w."""
     hydrostatic = np.trace(stress, axis1=1, axis2=2) / 3.0
     deviator = stress - hydrostatic[:, None, None] * np.eye(3)
     amplitude = largest_shear(deviator - centre(deviator.reshape(-1, 9)).reshape(3, 3))

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-SURFACE, NEAR, BELOW = "surface", "near surface", "below"
-"""Depth 0; below it down to 0.2 half-widths of the contact, where stress by friction falls steeply; deeper."""
+SURFACE, BELOW = "surface", "below"
+"""Depth 0; the largest value from DEEP down."""
+SHALLOW = {f"{depth:g} half-widths": depth for depth in (0.02, 0.05, 0.1)}
+"""Name -> depth over the half-width of the contact. Stress by friction falls steeply there and that by pressure rises:
+the largest value over a range of depths would be that at one of its ends."""
 DEEP = 0.2
-"""Half-widths at which the last one begins."""
-EVERYWHERE = SURFACE, NEAR, BELOW
+"""Half-widths at which `BELOW` begins."""
+NEAR_SURFACE = SURFACE, *SHALLOW
+EVERYWHERE = *NEAR_SURFACE, BELOW
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,8 @@ class Criterion:
     """Place of the values that the source speaks of."""
     pressure_power: float = 1.0
     """Largest power with which it grows with the contact pressure."""
+    of_history: bool = True
+    """Whether it is one of the stress while the contact passes."""
 
     def slopes_at(self, place: str) -> tuple[tuple[float, str], ...]:
         """m and its source, where there is one that speaks of values at this place."""
@@ -40,7 +46,7 @@ class Criterion:
 CONTACT_PRESSURE = Criterion(
     "contact_pressure", "contact pressure", places=(SURFACE,), exponent=13.22, exponent_place=SURFACE,
     source="ISO 6336-2, Z_NT of through-hardened and case-hardened steel without any pitting, 1.6 at 1e5 and 1.0 at "
-    "5e7 load cycles; on nominal stress with load factors",
+    "5e7 load cycles; on nominal stress with load factors", of_history=False,
 )  # fmt: skip
 ORTHOGONAL_SHEAR = Criterion(
     "orthogonal_shear_range", "range of orthogonal shear stress", exponent=9.19, exponent_place=BELOW,
@@ -49,7 +55,7 @@ ORTHOGONAL_SHEAR = Criterion(
 MAXIMUM_SHEAR = Criterion("maximum_shear", "maximum shear stress (Tresca)")
 VON_MISES = Criterion("von_mises", "von Mises")
 DANG_VAN = Criterion("dang_van", "Dang Van")
-TENSION = Criterion("tension", "tensile stress along the flank", places=(SURFACE, NEAR))
+TENSION = Criterion("tension", "tensile stress along the flank", places=NEAR_SURFACE)
 FATEMI_SOCIE = Criterion("fatemi_socie", "Fatemi-Socie", unit="", pressure_power=2.0)
 
 

@@ -23,11 +23,14 @@ from evolvent.strength.fatigue.criteria import (
     von_mises,
 )
 from evolvent.strength.fatigue.criterion import (
+    BELOW,
     CONTACT_PRESSURE,
     DANG_VAN,
+    DEEP,
     FATEMI_SOCIE,
     MAXIMUM_SHEAR,
     ORTHOGONAL_SHEAR,
+    SHALLOW,
     TENSION,
     VON_MISES,
     Criterion,
@@ -35,7 +38,7 @@ from evolvent.strength.fatigue.criterion import (
 )
 from evolvent.strength.fatigue.flank_loads import FlankLoads
 from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 
 INNER, OUTER, REACH = 721, 360, 10.0
 """Instants of a history while the point is below the contact, and before as after, up to this distance in half-widths.
@@ -79,6 +82,12 @@ class FlankFatigue:
     def depths_mm(self) -> Floats:
         """(n, m) [mm]."""
         return np.outer(self.loads.half_width, self.depths)
+
+    def at(self, place: str) -> Bools:
+        """(m,) which depths belong to a place. None does where `depths` lacks it."""
+        if place == BELOW:
+            return np.asarray(self.depths >= DEEP)
+        return np.isclose(self.depths, SHALLOW.get(place, 0.0), rtol=0.0, atol=1e-9)
 
 
 def flank_fatigue(

@@ -1,8 +1,10 @@
 """What loads the points of the flanks over the engagement of a tooth.
 
-While the contact passes over a point of a flank its tractions hardly change. So the history there is that of the
-tractions at the moment when the contact line lies over it, moved on along the profile: a slice of a position stands for
-the point of both flanks below its middle.
+While the contact passes over a point of a flank its pressure hardly changes, nor does its friction where it slides one
+way. So the history there is that of the tractions at the moment when the contact line lies over it, moved on along the
+profile: a slice of a position stands for the point of both flanks below its middle. Within a few half-widths of the
+pitch line this does not hold: friction goes from μ over 0 to μ the other way while the contact passes over the point
+(`strength.results.friction_reversal` has which points these are).
 """
 
 from __future__ import annotations

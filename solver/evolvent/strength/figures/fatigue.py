@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from evolvent.results.drawing.style import FAINT, PINION, PRESSURE_MAP, foot, friction_colours, png, sheet, styled
 from evolvent.strength.fatigue.criterion import BELOW, DANG_VAN, DEEP, ORTHOGONAL_SHEAR, VON_MISES
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
-from evolvent.strength.results.fatigue_rows import FrictionFatigue, depths_at, diameters
+from evolvent.strength.results.fatigue_tables import diameters
+from evolvent.strength.results.friction_fatigue import FrictionFatigue
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -57,7 +58,7 @@ def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue])
 def _over_flank(axes: Axes, pair: GearPair, own: FlankFatigue, scale: Normalize) -> None:
     """Largest below the surface, over face and diameter; over the diameter alone in plane strain."""
     diameter = diameters(pair, Member.PINION, own.loads.roll_distance)
-    values = own.values[DANG_VAN][:, depths_at(own, BELOW)].max(axis=1)
+    values = own.values[DANG_VAN][:, own.at(BELOW)].max(axis=1)
     axes.set_title(f"{DANG_VAN.words}: largest below {DEEP:g} half-widths", fontsize=10)
     axes.set_ylabel("diameter of the pinion [mm]")
     if len(np.unique(own.loads.height)) > 1:

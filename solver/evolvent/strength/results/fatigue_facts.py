@@ -13,7 +13,10 @@ from evolvent.strength.fatigue.criterion import VON_MISES
 from evolvent.strength.fatigue.fitted_tractions import shear_differences
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial
 from evolvent.strength.fatigue.flank_loads import LoadedPosition
-from evolvent.strength.results.fatigue_rows import FrictionFatigue
+from evolvent.strength.results.friction_fatigue import FrictionFatigue
+from evolvent.strength.results.friction_reversal import near_reversal
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.pair import GearPair
 
 FATIGUE_FACTS = "fatigue.json"
 Materials = tuple[FatigueMaterial, FatigueMaterial]
@@ -29,8 +32,10 @@ class FatigueFacts:
     """Points of each flank at which criteria are evaluated: slices of the contact at all positions."""
     left_out_percent: float
     """Slices under load that are left out, as they lie on a tip edge or in its zone, where pressure is singular."""
+    near_reversal_percent: float
+    """Points of the pinion near which friction reverses: histories do not hold there (near_friction_reversal)."""
     largest_pressure_MPa: float
-    """Of these points."""
+    """Of all points."""
     largest_pressure_MPa_error: float
     """Error bar of a run's largest pressure; null without a coarse companion (`output.error_bars`)."""
     pressure_over_shear_yield: float | None
@@ -50,18 +55,23 @@ SHAKEDOWN = 4.0
 
 
 def fatigue_facts(
-    found: FrictionFatigue, positions: Sequence[LoadedPosition], inner: tuple[float, float], materials: Materials
+    pair: GearPair,
+    found: FrictionFatigue,
+    positions: Sequence[LoadedPosition],
+    inner: tuple[float, float],
+    materials: Materials,
 ) -> FatigueFacts:
     """At one friction coefficient. inner: see `RunData.inner_path`; materials: of pinion and wheel."""
     loaded = sum(int((each.cut.line_load > 0.0).sum()) for each in positions)
-    peaks = found.gears[0].loads.peak
+    pinion = found.gears[Member.PINION].loads
+    peaks, reverses = pinion.peak, near_reversal(pair, Member.PINION, pinion, found.friction)
     differences = 100.0 * shear_differences(positions, inner, materials[0].poissons_ratio)
     known, σy = len(differences) > 0, materials[0].yield_stress
     largest = float(peaks.max()) if known else np.nan
     mises = max(float(own.values[VON_MISES].max(initial=0.0)) for own in found.gears)
     return FatigueFacts(
         found.friction, len(peaks), 100.0 * (1.0 - len(peaks) / loaded) if loaded else 0.0,
-        largest, largest * found.pressure_error,
+        100.0 * float(reverses.mean()) if len(peaks) else 0.0, largest, largest * found.pressure_error,
         None if σy is None else largest * np.sqrt(3.0) / σy, None if σy is None else mises / σy,
         float(np.median(differences)) if known else np.nan,
         float(np.quantile(np.abs(differences), 0.9)) if known else np.nan,

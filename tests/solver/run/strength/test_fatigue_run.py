@@ -12,12 +12,15 @@ from evolvent.results.archive.run_folder import FolderError
 from evolvent.run.scene_run import run_scene
 from evolvent.run.strength.fatigue_run import run_fatigue
 from evolvent.scene.scene import Scene, SceneError, load_scene
+from evolvent.scene.schema.fatigue import NEEDED, FatigueSection
+from evolvent.strength.fatigue.criterion import SHALLOW
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
 
 SETTINGS = (
     "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=8", "output.animation=false",
-    "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=1600", "fatigue.depths=[0,0.1,0.3,0.5,0.8,1.2]",
+    "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=1600",
+    "fatigue.depths=[0,0.02,0.05,0.1,0.3,0.5,0.8,1.2]",
 )  # fmt: skip
 
 
@@ -134,13 +137,43 @@ def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
 
 @pytest.mark.parametrize(
     "setting",
-    ["fatigue.depths=[0.1,0.5]", "fatigue.depths=[0,0.5,0.5]", "fatigue.depths=[0,0.1]", "fatigue.exponents=[5,5]",
-     "fatigue.yield_stress_MPa=-1"],
-)  # fmt: skip
+    ["fatigue.depths=[0.1,0.5]", "fatigue.exponents=[5,5]", "fatigue.yield_stress_MPa=-1"],
+)
 def test_sections_that_are_refused(setting: str) -> None:
-    """Depths that do not begin at the surface, do not rise, or end above what counts as below; exponents twice."""
+    """Two depths; exponents twice; no yield stress."""
     with pytest.raises(SceneError, match=setting.split("=")[0]):
         scene(setting)
+
+
+@pytest.mark.parametrize(
+    ("depths", "remedy"),
+    [("0.01,0.02,0.05,0.1,1", "add 0, at which"), ("0,0.2,0.5,0.8,1", "add 0.02, 0.05, 0.1, at which"),
+     ("0,0.02,0.05,0.1,0.5", "go down to 1 or deeper"), ("0,0.02,0.1,0.05,1", "let them ascend")],
+)  # fmt: skip
+def test_depths_that_tables_lack_are_named(depths: str, remedy: str) -> None:
+    """A list without the depths of fatigue.csv, too shallow, or not ascending: the remedy says what to write."""
+    with pytest.raises(SceneError) as refused:
+        scene(f"fatigue.depths=[{depths}]")
+    assert remedy in str(refused.value)
+
+
+def test_depths_of_the_section_are_those_of_the_tables() -> None:
+    """What a scene must have is what tables read; the default has it."""
+    assert (0.0, *SHALLOW.values()) == NEEDED and set(NEEDED) < set(FatigueSection().depths)
+
+
+def test_friction_reverses_at_the_pitch_point(out: Path) -> None:
+    """Zhang's pair, 20° of pressure angle: a point lies ρ(0)/r_b = 0.36 of its roll distance from the pitch line, and
+    is flagged up to two half-widths of 0.15 mm, 0.8 mm of roll distance; contact pressure in no line of fatigue.csv."""
+    flank = [row for row in rows(out / "fatigue_map.csv") if row["criterion"] == "dang_van"]
+    for row in flank:
+        ξ, half = abs(float(row["roll_distance_mm"])), float(row["half_width_mm"])
+        if abs(ξ - 2.0 * half / 0.36) > 0.2:
+            slides = float(row["traction_coefficient"]) > 0.99 * float(row["friction"])
+            assert (row["near_friction_reversal"] == "True") == (ξ < 2.0 * half / 0.36 or not slides)
+    assert {row["near_friction_reversal"] for row in flank} == {"True", "False"}
+    pressures = (row for row in rows(out / "fatigue.csv") if row["criterion"] == "contact_pressure")
+    assert {row["near_friction_reversal"] for row in pressures} == {"False"}
 
 
 @pytest.mark.mpi

@@ -45,6 +45,19 @@ def test_dang_van_of_alternating_torsion() -> None:
     assert dang_van(torsion(200.0), 0.7, 0.7) == pytest.approx(200.0, rel=1e-6)
 
 
+def test_dang_van_holds_both_fatigue_limits() -> None:
+    """With a = 3 τ_w/σ_w − 1.5 fully reversed torsion with τ_w and fully reversed tension with σ_w have τ_w both. The
+    latter has σ_w/2 of shear at σ_w/3 of hydrostatic stress: a locus that is constant at σ_w/2 below that allows
+    τ_w/(σ_w/2) = 1 + 2a/3 less."""
+    σw, τw = 600.0, 360.0
+    a = 3.0 * τw / σw - 1.5
+    assert dang_van(torsion(τw), a, 0.0) == pytest.approx(τw, rel=1e-6)
+    assert dang_van(tension(0.0, σw), a, 0.0) == pytest.approx(τw, rel=1e-6)
+    amplitude = dang_van(tension(0.0, σw), 0.0, 0.0)
+    assert amplitude == pytest.approx(0.5 * σw, rel=1e-6)
+    assert τw / amplitude == pytest.approx(1.0 + 2.0 * a / 3.0, rel=1e-6)
+
+
 def test_dang_van_out_of_phase() -> None:
     """σ_x and τ_xz 90° apart, τ_a = σ_a/√3: the deviator goes round a circle, its centre is 0; largest of shear
     √(σ²/4 + τ²) plus a σ/3 over the cycle."""

@@ -13,85 +13,86 @@ from evolvent.strength.fatigue.criterion import (
     BELOW,
     CONTACT_PRESSURE,
     DANG_VAN,
-    NEAR,
     ORTHOGONAL_SHEAR,
+    SHALLOW,
     SURFACE,
     TENSION,
 )
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads
-from evolvent.strength.results.fatigue_rows import (
-    FrictionFatigue,
-    changes,
-    depth_rows,
-    diameters,
-    fatigue_rows,
-    life_rows,
-    map_rows,
-)
+from evolvent.strength.results.fatigue_tables import depth_rows, diameters, fatigue_rows, life_rows, map_rows
+from evolvent.strength.results.friction_fatigue import FrictionFatigue, changes
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from tests.support.checkout import ROOT
 
 PAIR = load_scene(ROOT / "demos/he2022.toml").gear_pair()
-DEPTHS = np.array([0.0, 0.1, 0.5])
+DEPTHS = np.array([0.0, 0.1, 0.5, 1.0])
+TENTH = "0.1 half-widths"
+Rows = list[list[float]]
 
 
-def flank(peaks: list[float], shear: list[list[float]], tension: Floats) -> FlankFatigue:
+def flank(peaks: list[float], shear: Rows, tension: Floats) -> FlankFatigue:
     """Of three points at ξ = −2, 0, 3 mm, half-widths of 0.1, 0.2 and 0.1 mm."""
     n = len(peaks)
     place = np.column_stack([np.arange(n), np.zeros(n, dtype=int), np.zeros(n, dtype=int)])
     loads = FlankLoads(
         place, np.array([-2.0, 0.0, 3.0])[:n], np.zeros(n), np.array(peaks), np.array([0.1, 0.2, 0.1])[:n],
-        np.full(n, 0.1),
+        np.full(n, 0.2),
     )  # fmt: skip
-    surface = np.zeros((n, 3))
+    surface = np.zeros((n, 4))
     surface[:, 0] = peaks
-    edge = np.zeros((n, 3))
+    edge = np.zeros((n, 4))
     edge[:, 0] = tension
-    values = {CONTACT_PRESSURE: surface, ORTHOGONAL_SHEAR: np.array(shear).reshape(n, 3), TENSION: edge}
+    values = {CONTACT_PRESSURE: surface, ORTHOGONAL_SHEAR: np.array(shear).reshape(n, 4), TENSION: edge}
     return FlankFatigue(loads, DEPTHS, values)
 
 
-FIRST = flank([1000.0, 900.0, 800.0], [[100, 120, 500], [90, 300, 450], [80, 96, 400]], np.array([200.0, 180.0, 160.0]))
-LESS = flank([1000.0, 900.0, 800.0], [[80, 90, 510], [72, 90, 440], [64, 70, 380]], np.array([150.0, 144.0, 128.0]))
+SHEAR: Rows = [[100, 120, 400, 500], [90, 300, 450, 90], [80, 96, 400, 80]]
+FIRST = flank([1000.0, 900.0, 800.0], SHEAR, np.array([200.0, 180.0, 160.0]))
+LOWER: Rows = [[80, 90, 410, 510], [72, 90, 440, 72], [64, 70, 380, 64]]
+LESS = flank([1000.0, 900.0, 800.0], LOWER, np.array([150.0, 144.0, 128.0]))
 FOUND = [FrictionFatigue(0.2, (FIRST, FIRST), 0.05, (-2.05,)), FrictionFatigue(0.15, (LESS, LESS), math.nan)]
 
 
 def test_largest_values_and_their_places() -> None:
-    """Shear is 100 at the surface, 500 at half of 0.1 mm below the point at ξ = −2 mm, and near the surface 300 at a
-    tenth of 0.2 mm below that at ξ = 0; the error is 5 % of each. The first point lies beside a zone that begins at
-    ξ = −2.05 mm."""
+    """Shear is 100 at the surface, 500 at 0.1 mm below the point at ξ = −2 mm, which is the last depth, and at a tenth
+    of a half-width 300, 20 µm below the pitch point, where friction reverses; the error is 5 % of each. The first point
+    lies beside a zone that begins at ξ = −2.05 mm."""
     rows = {(row.gear, row.criterion, row.place): row for row in fatigue_rows(PAIR, FOUND) if row.friction == 0.2}
     name = ORTHOGONAL_SHEAR.name
-    top, near, deep = (rows["pinion", name, place] for place in (SURFACE, NEAR, BELOW))
-    assert (top.value, top.depth_mm, top.roll_distance_mm, top.pressure_MPa) == (100.0, 0.0, -2.0, 1000.0)
-    assert (near.value, near.depth_mm, near.at_zone_end) == (300.0, pytest.approx(0.02), False)
-    assert (deep.value, deep.depth_mm, deep.value_error, deep.at_zone_end) == (500.0, 0.05, 25.0, True)
+    top, near, deep = (rows["pinion", name, place] for place in (SURFACE, TENTH, BELOW))
+    assert (top.value, top.depth_um, top.roll_distance_mm, top.pressure_MPa) == (100.0, 0.0, -2.0, 1000.0)
+    assert (near.value, near.depth_um, near.at_zone_end) == (300.0, pytest.approx(20.0), False)
+    assert (deep.value, deep.depth_um, deep.value_error, deep.at_zone_end) == (500.0, 100.0, 25.0, True)
+    assert [row.near_friction_reversal for row in (top, near, deep)] == [False, True, False]
+    assert [row.at_depth_limit for row in (top, near, deep)] == [False, False, True]
     assert ("pinion", "contact_pressure", BELOW) not in rows
     diameter = 2.0 * np.hypot(PAIR.curvature_radii(np.array([-2.0]))[Member.WHEEL], PAIR.wheel.base_radius)
     assert rows["wheel", name, BELOW].diameter_mm == pytest.approx(float(diameter[0]))
 
 
 def test_error_of_a_change() -> None:
-    """Below, in the median: 440/450 on the fine meshes, 460/450 on the coarse ones, 4.4 % of difference; none without
-    a companion at the first coefficient."""
-    more = flank([1000.0, 900.0, 800.0], [[80, 90, 515], [72, 90, 460], [64, 70, 391]], np.array([150.0, 144.0, 128.0]))
+    """Below, in the median: 440/450 on the fine meshes, 460/450 on the coarse ones, 4.4 % of difference; of the largest
+    510/500 and 515/500; none without a companion at the first coefficient."""
+    coarse: Rows = [[80, 90, 410, 515], [72, 90, 460, 72], [64, 70, 391, 64]]
+    more = flank([1000.0, 900.0, 800.0], coarse, np.array([150.0, 144.0, 128.0]))
     found = [replace(FOUND[0], coarse=(FIRST, FIRST)), replace(FOUND[1], coarse=(more, more))]
 
-    def error(of: list[FrictionFatigue]) -> float:
+    def errors(of: list[FrictionFatigue]) -> tuple[float, float]:
         chosen = (row for row in fatigue_rows(PAIR, of) if (row.criterion, row.place) == (ORTHOGONAL_SHEAR.name, BELOW))
-        return next(row.change_at_points_percent_error for row in chosen if row.friction == 0.15)
+        row = next(row for row in chosen if row.friction == 0.15)
+        return row.change_percent_error, row.change_at_points_percent_error
 
-    assert error(found) == pytest.approx(100.0 * 20.0 / 450.0)
-    assert math.isnan(error([FOUND[0], found[1]]))
+    assert errors(found) == pytest.approx((100.0 * 5.0 / 500.0, 100.0 * 20.0 / 450.0))
+    assert np.isnan(errors([FOUND[0], found[1]])).all()
 
 
 def test_changes_of_largest_values_and_at_points() -> None:
     """Below: 510/500 of the largest; at the points 1.02, 0.978 and 0.95, of which the second is the median. A point
     that one has alone does not count."""
     assert changes(LESS, FIRST, ORTHOGONAL_SHEAR, BELOW) == pytest.approx((1.02, 440 / 450))
-    fewer = flank([1000.0, 900.0], [[80, 90, 510], [72, 90, 440]], np.array([150.0, 144.0]))
+    fewer = flank([1000.0, 900.0], LOWER[:2], np.array([150.0, 144.0]))
     moved = replace(fewer, loads=replace(fewer.loads, place=fewer.loads.place + np.array([1, 0, 0])))
     assert changes(moved, FIRST, ORTHOGONAL_SHEAR, BELOW)[1] == pytest.approx(np.median([510 / 450, 440 / 400]))
 
@@ -131,15 +132,29 @@ def test_map_has_every_point_from_the_root_on() -> None:
     own = [row for row in rows if (row.gear, row.friction, row.criterion) == ("wheel", 0.2, "contact_pressure")]
     assert [row.roll_distance_mm for row in own] == [-2.0, 0.0, 3.0]
     assert [row.at_surface for row in own] == [1000.0, 900.0, 800.0]
-    assert all(math.isnan(row.below) and math.isnan(row.depth_mm) for row in own)
+    assert all(math.isnan(row.below) and math.isnan(row.depth_um) for row in own)
+    assert [row.near_friction_reversal for row in own] == [False, True, False]
+
+
+def test_map_has_what_lies_at_each_depth() -> None:
+    """Shear below the second point: 90 at the surface, 300 at 0.1 half-widths, 450 at most from 0.2 down, half of 0.2
+    mm below it; nothing at depths that were not evaluated."""
+    (row,) = [row for row in map_rows(PAIR, FOUND[:1]) if (row.gear, row.criterion, row.roll_distance_mm) == (
+        "pinion", ORTHOGONAL_SHEAR.name, 0.0)]  # fmt: skip
+    assert (row.at_surface, row.at_0_1, row.below, row.depth_um) == (90.0, 300.0, 450.0, 100.0)
+    assert math.isnan(row.at_0_02) and math.isnan(row.at_0_05)
+    assert list(SHALLOW) == ["0.02 half-widths", "0.05 half-widths", TENTH]
 
 
 def test_depths_below_the_most_loaded_point() -> None:
-    """The point with 1000 MPa: shear at 0, 0.01 and 0.05 mm; contact pressure at the surface alone, tension near it."""
+    """The point with 1000 MPa: shear at 0, 10, 50 and 100 µm; contact pressure at the surface alone, tension down to
+    0.1 half-widths."""
     rows = [row for row in depth_rows(PAIR, FOUND) if (row.gear, row.friction) == ("pinion", 0.2)]
     own = [row for row in rows if row.criterion == ORTHOGONAL_SHEAR.name]
-    shear = [(row.depth_mm, row.depth_over_half_width, row.value) for row in own]
-    assert shear == [(0.0, 0.0, 100.0), (pytest.approx(0.01), 0.1, 120.0), (pytest.approx(0.05), 0.5, 500.0)]
+    shear = [(row.depth_um, row.depth_over_half_width, row.value) for row in own]
+    assert shear == [
+        (0.0, 0.0, 100.0), (pytest.approx(10.0), 0.1, 120.0), (pytest.approx(50.0), 0.5, 400.0), (100.0, 1.0, 500.0)
+    ]  # fmt: skip
     assert [row.criterion for row in rows].count("contact_pressure") == 1
     assert [row.criterion for row in rows].count("tension") == 2
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from shutil import copy
+from statistics import median
 
 import numpy as np
 
@@ -26,24 +28,30 @@ from evolvent.strength.fatigue.criterion import (
     FATEMI_SOCIE,
     MAXIMUM_SHEAR,
     ORTHOGONAL_SHEAR,
+    SURFACE,
     TENSION,
     VON_MISES,
     Criterion,
 )
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads
-from evolvent.strength.results.fatigue_rows import changes
+from evolvent.strength.results.friction_fatigue import changes
 
 KEPT, PICTURE = "fatigue/friction.csv", "fatigue/yang.png"
 COMMAND = "python -m evidence.pages.papers.yang_fatigue --out DIR"
 UNCOATED, COATED, RATIO = 0.132, 0.107, 3.15
 PEAK, STEEL = 1579.0, FatigueMaterial(0.3, 210e3 / 2.6, 2000.0, 0.3, 0.0, 1.0)
-"""MPa: Hertz at the pitch point of Yang's pair; the paper does not print the material, this is a hardened case."""
+"""MPa: Hertz at the pitch point of Yang's pair. The paper has 20MnCrS5 (section 3.3), and neither treatment, hardness
+nor yield stress: this is a hardened case."""
 DEPTHS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.15, *np.linspace(0.2, 1.4, 25))
 """Half-widths."""
 CRITERIA = CONTACT_PRESSURE, ORTHOGONAL_SHEAR, MAXIMUM_SHEAR, VON_MISES, DANG_VAN, FATEMI_SOCIE, TENSION
-PAIR = "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=2000", "output.error_bars=false"
+PAIR = "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=2000"
 LEVELS = "quick", "standard", "fine"
+COLUMNS = {"pair": "change_percent", "points": "change_at_points_percent"}
+"""Of the largest values on the pinion, and the median at its points."""
+CONSTANT = "dang_van_constant"
+"""Dang Van's shear amplitude alone, as on a locus that is constant below a third of the fatigue limit in bending."""
 
 
 def figures(runs: Runs) -> Named:
@@ -59,25 +67,38 @@ def _line_contact() -> Named:
     for criterion in CRITERIA[1:]:
         for place in criterion.places:
             yield f"line_{criterion.name}_{place}", changes(uncoated, coated, criterion, place)[0]
+    coated, uncoated = (_below_line(μ, replace(STEEL, tension_factor=0.0)) for μ in (COATED, UNCOATED))
+    for place in DANG_VAN.places:
+        yield f"line_{CONSTANT}_{place}", changes(uncoated, coated, DANG_VAN, place)[0]
 
 
-def _below_line(friction: float) -> FlankFatigue:
+def _below_line(friction: float, steel: FatigueMaterial = STEEL) -> FlankFatigue:
     one = np.ones(1)
     loads = FlankLoads(np.zeros((1, 3), dtype=int), 0.0 * one, 0.0 * one, PEAK * one, one, friction * one)
-    return flank_fatigue(loads, friction, DEPTHS, STEEL)
+    return flank_fatigue(loads, friction, DEPTHS, steel)
 
 
 def _pair(runs: Runs) -> Named:
     """Uncoated over coated on the pinion of Yang's pair: of the largest values, and the median at its points."""
-    folder = _fatigue(runs, "yang", "yang2022.toml", "output.pictures=true")
+    folder = _fatigue(runs, "yang", "yang2022.toml", "output.error_bars=true", "output.pictures=true")
     copy(folder / "pictures/fatigue.png", DOCS / PICTURE)
     for row in read(folder / "fatigue.csv"):
         if row["gear"] != "pinion" or float(row["friction"]) != COATED:
             continue
         name = f"{row['criterion']}_{row['place']}"
-        yield f"pair_{name}", 1.0 / (1.0 + float(row["change_percent"]) / 100.0)
-        yield f"points_{name}", 1.0 / (1.0 + float(row["change_at_points_percent"]) / 100.0)
-        yield f"roll_distance_{name}_mm", float(row["roll_distance_mm"])
+        for of, column in COLUMNS.items():
+            coated = 1.0 + float(row[column]) / 100.0
+            yield f"{of}_{name}", 1.0 / coated
+            yield f"{of}_{name}_error_percent", float(row[f"{column}_error"]) / coated**2
+        for column in ("value", "value_error", "pressure_MPa", "roll_distance_mm", "depth_um"):
+            yield f"coated_{name}_{column}", float(row[column])
+        for column in ("at_zone_end", "near_friction_reversal", "at_depth_limit"):
+            yield f"coated_{name}_{column}", float(row[column] == str(True))
+    flank = [row for row in read(folder / "fatigue_map.csv") if row["gear"] == "pinion"]
+    own = [row for row in flank if (row["criterion"], float(row["friction"])) == (DANG_VAN.name, COATED)]
+    yield "pair_half_width_median_mm", median(float(row["half_width_mm"]) for row in own)
+    reverses = sum(row["near_friction_reversal"] == str(True) for row in own)
+    yield "pair_near_reversal_percent", 100.0 * reverses / len(own)
     facts = json.loads((folder / "fatigue.json").read_text(encoding="utf-8"))[0]
     for name in ("points", "left_out_percent", "fitted_shear_median_percent", "fitted_shear_most_percent"):
         yield f"pair_{name}", facts[name]
@@ -87,7 +108,7 @@ def _fitted(runs: Runs) -> Named:
     """Zhang's pair in plane strain at three levels: half-ellipses against the pressures as solved."""
     for level in LEVELS:
         folder = _fatigue(runs, f"zhang_{level}", "zhang2023.toml", "pinion.face_width_mm=25", "sweep.positions=12",
-                          f"mesh.level={level}", "output.pictures=false")  # fmt: skip
+                          f"mesh.level={level}", "output.error_bars=false", "output.pictures=false")  # fmt: skip
         facts = json.loads((folder / "fatigue.json").read_text(encoding="utf-8"))[0]
         yield f"{level}_median_percent", facts["fitted_shear_median_percent"]
         yield f"{level}_most_percent", facts["fitted_shear_most_percent"]
@@ -102,19 +123,28 @@ def _fatigue(runs: Runs, name: str, scene: str, *settings: str) -> Path:
 def friction_table(docs: Path) -> str:
     """Uncoated over coated by each criterion, and the exponent that would make the paper's ratio of it."""
     f = kept.kept(docs / KEPT, COMMAND)
-    rows = [
-        (criterion.words, place, *_cells(f.get(f"line_{criterion.name}_{place}")),
-         *(_percent(f[f"{of}_{criterion.name}_{place}"]) for of in ("pair", "points")),
-         _exponent(f[f"points_{criterion.name}_{place}"]),
-         _life(criterion, place, f[f"points_{criterion.name}_{place}"]))
-        for criterion in CRITERIA
-        for place in criterion.places
-    ]  # fmt: skip
+    rows = [_row(f, criterion, place) for criterion in CRITERIA for place in criterion.places]
+    at = 1 + max(k for k, row in enumerate(rows) if row[0] == DANG_VAN.words)
+    constant = f[f"line_{CONSTANT}_{SURFACE}"]
+    rows.insert(at, ("the same, a = 0", SURFACE, "0", _percent(constant), _exponent(constant), *5 * ("–",)))
     head = (
-        "criterion", "place", "line contact of the same pressure", "exponent for 3.15", "Yang's pinion, largest",
-        "Yang's pinion, median of its points", "exponent for 3.15", "life ratio by its own exponent",
+        "criterion", "place", "depth [µm]", "line contact of the same pressure", "exponent for 3.15",
+        "Yang's pinion, largest", "exponent for 3.15", "Yang's pinion, median of its points", "exponent for 3.15",
+        "life ratio by its own exponent: largest, median",
     )  # fmt: skip
     return markdown(head, rows)
+
+
+def _row(f: dict[str, float], criterion: Criterion, place: str) -> tuple[str, ...]:
+    name = f"{criterion.name}_{place}"
+    line = f.get(f"line_{name}")
+    cells = ["–", "–"] if line is None else [_percent(line), _exponent(line)]
+    for of in COLUMNS:
+        ratio, error = f[f"{of}_{name}"], f[f"{of}_{name}_error_percent"]
+        cells += [f"{100.0 * (ratio - 1.0):+.1f} ± {error:.1f} %", _exponent(ratio, error)]
+    largest, at_points = f[f"pair_{name}"], f[f"points_{name}"]
+    lives = [f"{largest**m:.2f}, {at_points**m:.2f} (m = {m:g})" for m, _ in criterion.slopes_at(place)]
+    return criterion.words, place, f"{f[f'coated_{name}_depth_um']:.3g}", *cells, "; ".join(lives) or "–"
 
 
 def fitted_table(docs: Path) -> str:
@@ -130,22 +160,15 @@ def fitted_table(docs: Path) -> str:
     return markdown(("pair and level", "median", "nine in ten within"), rows)
 
 
-def _cells(ratio: float | None) -> tuple[str, str]:
-    return ("–", "–") if ratio is None else (_percent(ratio), _exponent(ratio))
-
-
 def _percent(ratio: float) -> str:
     return f"{100.0 * (ratio - 1.0):+.1f} %"
 
 
-def _exponent(ratio: float) -> str:
-    if ratio <= 1.0 + 1e-3:
-        return "none"
-    return f"{math.log(RATIO) / math.log(ratio):.3g}"
-
-
-def _life(criterion: Criterion, place: str, ratio: float) -> str:
-    return ", ".join(f"{ratio**m:.2f} (m = {m:g})" for m, _ in criterion.slopes_at(place)) or "–"
+def _exponent(ratio: float, error_percent: float = 0.0) -> str:
+    """error_percent: of the ratio; what it does not resolve has no exponent."""
+    if 100.0 * abs(ratio - 1.0) < error_percent:
+        return "not resolved"
+    return "none" if ratio <= 1.0 + 1e-3 else f"{math.log(RATIO) / math.log(ratio):.3g}"
 
 
 if __name__ == "__main__":

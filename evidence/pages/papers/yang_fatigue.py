@@ -12,7 +12,6 @@ import math
 from dataclasses import replace
 from pathlib import Path
 from shutil import copy
-from statistics import median
 
 import numpy as np
 
@@ -22,6 +21,8 @@ from evidence.pages.papers.kept_runs.kept import Named
 from evidence.pages.papers.kept_runs.runs import Runs, keep_figures, read
 from evidence.processes import module_run
 from evidence.tables import markdown
+from evolvent.fem.material import Material, contact_modulus
+from evolvent.scene.scene import load_scene
 from evolvent.strength.fatigue.criterion import (
     CONTACT_PRESSURE,
     DANG_VAN,
@@ -43,6 +44,7 @@ UNCOATED, COATED, RATIO = 0.132, 0.107, 3.15
 PEAK, STEEL = 1579.0, FatigueMaterial(0.3, 210e3 / 2.6, 2000.0, 0.3, 0.0, 1.0)
 """MPa: Hertz at the pitch point of Yang's pair. The paper has 20MnCrS5 (section 3.3), and neither treatment, hardness
 nor yield stress: this is a hardened case."""
+BULK = Material(210e3, 0.3)
 DEPTHS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.15, *np.linspace(0.2, 1.4, 25))
 """Half-widths."""
 CRITERIA = CONTACT_PRESSURE, ORTHOGONAL_SHEAR, MAXIMUM_SHEAR, VON_MISES, DANG_VAN, FATEMI_SOCIE, TENSION
@@ -50,6 +52,7 @@ PAIR = "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=2000"
 LEVELS = "quick", "standard", "fine"
 COLUMNS = {"pair": "change_percent", "points": "change_at_points_percent"}
 """Of the largest values on the pinion, and the median at its points."""
+Figures = dict[str, float]
 CONSTANT = "dang_van_constant"
 """Dang Van's shear amplitude alone, as on a locus that is constant below a third of the fatigue limit in bending."""
 
@@ -62,11 +65,15 @@ def figures(runs: Runs) -> Named:
 
 
 def _line_contact() -> Named:
-    """Uncoated over coated, below a line contact of the same pressure."""
+    """Uncoated over coated, below a line contact of the same pressure, and where it is largest uncoated."""
+    pair = load_scene(DEMOS / "yang2022.toml").gear_pair()
+    half_width = 2.0 * PEAK * float(pair.relative_curvature_radius(np.zeros(1))[0]) / contact_modulus(*2 * (BULK,))
     coated, uncoated = (_below_line(μ) for μ in (COATED, UNCOATED))
     for criterion in CRITERIA[1:]:
         for place in criterion.places:
             yield f"line_{criterion.name}_{place}", changes(uncoated, coated, criterion, place)[0]
+            at = np.where(uncoated.at(place), uncoated.values[criterion][0], -1.0)
+            yield f"line_{criterion.name}_{place}_um", 1e3 * half_width * DEPTHS[int(np.argmax(at))]
     coated, uncoated = (_below_line(μ, replace(STEEL, tension_factor=0.0)) for μ in (COATED, UNCOATED))
     for place in DANG_VAN.places:
         yield f"line_{CONSTANT}_{place}", changes(uncoated, coated, DANG_VAN, place)[0]
@@ -90,17 +97,12 @@ def _pair(runs: Runs) -> Named:
             coated = 1.0 + float(row[column]) / 100.0
             yield f"{of}_{name}", 1.0 / coated
             yield f"{of}_{name}_error_percent", float(row[f"{column}_error"]) / coated**2
-        for column in ("value", "value_error", "pressure_MPa", "roll_distance_mm", "depth_um"):
-            yield f"coated_{name}_{column}", float(row[column])
-        for column in ("at_zone_end", "near_friction_reversal", "at_depth_limit"):
-            yield f"coated_{name}_{column}", float(row[column] == str(True))
-    flank = [row for row in read(folder / "fatigue_map.csv") if row["gear"] == "pinion"]
-    own = [row for row in flank if (row["criterion"], float(row["friction"])) == (DANG_VAN.name, COATED)]
-    yield "pair_half_width_median_mm", median(float(row["half_width_mm"]) for row in own)
-    reverses = sum(row["near_friction_reversal"] == str(True) for row in own)
-    yield "pair_near_reversal_percent", 100.0 * reverses / len(own)
+        yield f"roll_distance_{name}_mm", float(row["roll_distance_mm"])
     facts = json.loads((folder / "fatigue.json").read_text(encoding="utf-8"))[0]
-    for name in ("points", "left_out_percent", "fitted_shear_median_percent", "fitted_shear_most_percent"):
+    for name in (
+        "points", "left_out_percent", "near_reversal_percent", "fitted_shear_median_percent",
+        "fitted_shear_most_percent",
+    ):  # fmt: skip
         yield f"pair_{name}", facts[name]
 
 
@@ -135,16 +137,29 @@ def friction_table(docs: Path) -> str:
     return markdown(head, rows)
 
 
-def _row(f: dict[str, float], criterion: Criterion, place: str) -> tuple[str, ...]:
+def _row(f: Figures, criterion: Criterion, place: str) -> tuple[str, ...]:
     name = f"{criterion.name}_{place}"
     line = f.get(f"line_{name}")
     cells = ["–", "–"] if line is None else [_percent(line), _exponent(line)]
     for of in COLUMNS:
-        ratio, error = f[f"{of}_{name}"], f[f"{of}_{name}_error_percent"]
-        cells += [f"{100.0 * (ratio - 1.0):+.1f} ± {error:.1f} %", _exponent(ratio, error)]
-    largest, at_points = f[f"pair_{name}"], f[f"points_{name}"]
+        cells += _of_pair(f, of, criterion, place)
+    largest, at_points = (f.get(f"{of}_{name}", math.nan) for of in COLUMNS)
     lives = [f"{largest**m:.2f}, {at_points**m:.2f} (m = {m:g})" for m, _ in criterion.slopes_at(place)]
-    return criterion.words, place, f"{f[f'coated_{name}_depth_um']:.3g}", *cells, "; ".join(lives) or "–"
+    return criterion.words, place, f"{f.get(f'line_{name}_um', 0.0):.3g}", *cells, "; ".join(lives) or "–"
+
+
+def _of_pair(f: Figures, of: str, criterion: Criterion, place: str) -> list[str]:
+    """Change and exponent on the pinion. Where runs have none: below a line contact times that of the pressure, for
+    criteria that grow in proportion to it."""
+    name = f"{of}_{criterion.name}_{place}"
+    if name in f:
+        error = f.get(f"{name}_error_percent")
+        shown = _percent(f[name]) if error is None else f"{100.0 * (f[name] - 1.0):+.1f} ± {error:.1f} %"
+        return [shown, _exponent(f[name], error or 0.0)]
+    if criterion.pressure_power != 1.0:
+        return ["–", "–"]
+    product = f[f"line_{criterion.name}_{place}"] * f[f"{of}_{CONTACT_PRESSURE.name}_{SURFACE}"]
+    return [f"≈ {_percent(product)}", _exponent(product)]
 
 
 def fitted_table(docs: Path) -> str:
@@ -168,7 +183,10 @@ def _exponent(ratio: float, error_percent: float = 0.0) -> str:
     """error_percent: of the ratio; what it does not resolve has no exponent."""
     if 100.0 * abs(ratio - 1.0) < error_percent:
         return "not resolved"
-    return "none" if ratio <= 1.0 + 1e-3 else f"{math.log(RATIO) / math.log(ratio):.3g}"
+    if ratio <= 1.0 + 1e-3:
+        return "none"
+    exponent = math.log(RATIO) / math.log(ratio)
+    return f"{exponent:.3g}" if exponent < 100.0 else f"{exponent:.0f}"
 
 
 if __name__ == "__main__":

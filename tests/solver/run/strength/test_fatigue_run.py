@@ -119,6 +119,11 @@ def test_facts(out: Path) -> None:
         assert fact["points"] == len({row["roll_distance_mm"] for row in own}) > 8
         assert 0.0 <= fact["left_out_percent"] < 50.0
         assert fact["fitted_shear_most_percent"] > 0.0
+        pinion = [row for row in flank if (row["gear"], row["criterion"]) == ("pinion", "dang_van")]
+        same = [row for row in pinion if float(row["friction"]) == fact["friction"]]
+        flagged = sum(row["near_friction_reversal"] == "True" for row in same)
+        assert flagged > 0
+        assert fact["near_reversal_percent"] == pytest.approx(100.0 * flagged / len(same))
 
 
 def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:

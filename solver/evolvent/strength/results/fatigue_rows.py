@@ -78,7 +78,7 @@ class FatigueLifeRow:
     """By the largest values of the flank, each at a single point, which may lie beside a tip-edge zone (`at_zone_end`
     of fatigue.csv) and at another one for each coefficient."""
     life_ratio_at_points: float
-    """By the median change at the points of the flank, each compared with itself: the one to quote."""
+    """By the median change at the points of the flank, each compared with itself; quote both."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from evolvent.strength.fatigue.criterion import DANG_VAN
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads
 from evolvent.strength.figures.fatigue import fatigue_figure
-from evolvent.strength.results.fatigue_rows import FrictionFatigue
+from evolvent.strength.results.friction_fatigue import FrictionFatigue
 from tests.support.gear_cases import spur_scene
 
 COUNT, DEPTHS = 5, (0.0, 0.1, 0.2, 0.5, 0.8, 1.5, 3.0)

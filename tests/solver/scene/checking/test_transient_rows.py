@@ -20,7 +20,7 @@ UNRESOLVED = "the pair's own vibration of 3805 Hz"
 
 def pair(*settings: str) -> Scene:
     """He's, with three speeds."""
-    return load_scene(ROOT / "demos/he2022_dynamics.toml", settings)
+    return load_scene(ROOT / "demos/he2022_dynamics.toml", ["transient.speeds_rpm=[1500,2200,4000]", *settings])
 
 
 def told(scene: Scene, companion: bool = True) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 The paper computes 0.0015 s "dynamic, implicit" with a speed on the pinion and a load on the wheel, and says nothing of
 how the motion begins. Here the flanks just touch at t = 0 (`transient.start = "rest"`), with a backlash in which they
-can part; beside it the wheel's inertia on the mean stiffness of the mesh, m ẍ + k x = F_0 from x = 0 and ẋ = v.
+can part, without friction; beside it the wheel's inertia on the mean stiffness of the mesh, m ẍ + k x = F_0 from x = 0 and ẋ = v.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from evolvent.scene.schema.dynamics import DynamicsSection
 
 DURATION = 0.0015
 """[s], the paper's."""
-SPEED, FRICTION = 1500, 0.07
+SPEED = 1500
 PICTURE = "yang2022/from_rest.png"
 SETTINGS = (
-    f"transient.speeds_rpm=[{SPEED}]", f"contact.friction={FRICTION}", 'transient.start="rest"',
+    f"transient.speeds_rpm=[{SPEED}]", "contact.friction=0.0", 'transient.start="rest"',
     "transient.mesh_periods=2", "transient.tolerance=0.01", "dynamics.backlash_um=1000",
 )  # fmt: skip
 
@@ -65,7 +65,7 @@ def sentence(kept: Mapping[str, float]) -> str:
     """What the figures say."""
     return (
         "If the pair starts from rest (the paper does not say how its 0.0015 s begin; here the pinion has 1500 r/min "
-        "at once and the wheel is at rest under its torque), the mesh force rises to "
+        "at once and the wheel is at rest under its torque, without friction), the mesh force rises to "
         f"**{kept['rest_contact_ratio']:.1f} times the load** {kept['rest_contact_us']:.0f} µs after the flanks touch "
         f"({kept['rest_force_ratio']:.1f} times after {kept['rest_time_us']:.0f} µs by the wheel's inertia on the "
         f"mean stiffness alone), they part after {kept['rest_parted_us']:.0f} µs, and by up to "

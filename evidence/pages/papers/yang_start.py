@@ -1,8 +1,9 @@
 """Yang's pair from rest: the pinion at 1500 r/min at once, the wheel at rest under its torque.
 
 The paper computes 0.0015 s "dynamic, implicit" with a speed on the pinion and a load on the wheel, and says nothing of
-how the motion begins. Here the flanks just touch at t = 0 (`transient.start = "rest"`), with a backlash in which they
-can part, without friction; beside it the wheel's inertia on the mean stiffness of the mesh, m ẍ + k x = F_0 from x = 0 and ẋ = v.
+how the motion begins. Here the flanks just touch at t = 0 (`transient.start = "rest"`), without friction, and with a
+backlash in which they can part; beside it the wheel's inertia on the mean stiffness of the mesh, m ẍ + k x = F_0 from
+x = 0 and ẋ = v.
 """
 
 from __future__ import annotations

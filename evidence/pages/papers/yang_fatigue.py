@@ -149,17 +149,10 @@ def _row(f: Figures, criterion: Criterion, place: str) -> tuple[str, ...]:
 
 
 def _of_pair(f: Figures, of: str, criterion: Criterion, place: str) -> list[str]:
-    """Change and exponent on the pinion. Where runs have none: below a line contact times that of the pressure, for
-    criteria that grow in proportion to it."""
+    """Change with its error, and exponent, on the pinion."""
     name = f"{of}_{criterion.name}_{place}"
-    if name in f:
-        error = f.get(f"{name}_error_percent")
-        shown = _percent(f[name]) if error is None else f"{100.0 * (f[name] - 1.0):+.1f} ± {error:.1f} %"
-        return [shown, _exponent(f[name], error or 0.0)]
-    if criterion.pressure_power != 1.0:
-        return ["–", "–"]
-    product = f[f"line_{criterion.name}_{place}"] * f[f"{of}_{CONTACT_PRESSURE.name}_{SURFACE}"]
-    return [f"≈ {_percent(product)}", _exponent(product)]
+    error = f[f"{name}_error_percent"]
+    return [f"{_percent(f[name])[:-2]} ± {error:.1f} %", _exponent(f[name], error)]
 
 
 def fitted_table(docs: Path) -> str:

@@ -94,7 +94,7 @@ def previous_jumps(
 def _on_loaded_teeth(rows: Ints, forces: Floats) -> Bools:
     """(m,) bool: the rows of teeth that carry load."""
     size = np.abs(forces).max(axis=1)
-    return np.isin(rows[:, 0], rows[size > NO_LOAD * size.max(), 0])
+    return np.isin(rows[:, 0], rows[size > NO_LOAD * size.max(initial=0.0), 0])
 
 
 def _have_equal_rows(histories: Sequence[FrictionHistory]) -> bool:

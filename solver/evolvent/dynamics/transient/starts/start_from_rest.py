@@ -1,8 +1,8 @@
 """The state in which a transient begins with a blow: one gear at its speed at once, the other one at rest.
 
 The flanks just touch, without load. The nominal rotation has both gears turn; a gear at rest lags behind it, by the
-speed of the line of action: r_b1 φ_1 − r_b2 φ_2 grows at r_b1 ω_1. The bodies do not vibrate, and all torques act from
-then on. Where both gears are free it is their speed of approach; the nominal rotation is then that of both together,
+speed of the line of action: r_b1 φ_1 − r_b2 φ_2 grows at r_b1 ω_1. The bodies do not vibrate, and all torques and the
+damping of the mesh act from then on, so that M a = p − D v at once. Where both gears are free it is their speed of approach; the nominal rotation is then that of both together,
 after the blow.
 """
 
@@ -29,13 +29,14 @@ def start_from_rest(pair: MovingPair, problem: GearProblem, speed: float, fricti
     rest = np.zeros(pair.count)
     position = np.append(rest, touching / pair.lever)
     velocity = np.append(rest, speed * pair.base_radii[0] / pair.lever)
+    load = np.append(rest, pair.drive.torque)
+    acceleration = np.linalg.solve(pair.system.mass, load - pair.system.damping * velocity)
     stand = Stand(pair.model.pair, 0.0, pair.drive.rotations(float(position[-1])))
     history = _untouched(stand, pair.model.bodies[0].d) if friction else None
-    return PairState(MotionState(position, velocity, np.zeros(len(position))), history, rest)
+    return PairState(MotionState(position, velocity, acceleration), history, rest)
 
 
 def _untouched(stand: Stand, d: int) -> FrictionHistory:
     """Of flanks on which nothing has pressed. d: of space."""
     rows, nothing = np.zeros((0, 2), dtype=int), np.zeros((0, d))
     return FrictionHistory(stand, (rows, rows), (nothing, nothing), nothing)
-

@@ -90,6 +90,21 @@ def test_blow_is_that_of_an_oscillator_on_the_static_force() -> None:
     np.testing.assert_allclose([moment.mesh_force for moment in found], forces, atol=0.025 * forces.max())
 
 
+def test_load_acts_at_once() -> None:
+    """Problem: the pair pushed apart, at rest, undamped: no flank touches. Exact: the load moves it as from the first
+    instant on, x = ½ (F_0/m) t² and ẋ = (F_0/m) t."""
+    case, start = resting(positions=1500)
+    pair = replace(case.pair, mesh_damping=0.0)
+    case = replace(case, pair=pair, contacts=replace(case.contacts, pair=pair, kept={}))
+    begin = start_from_rest(pair, gear_problem(spur_scene("mesh.level=quick")), 0.0, 0.0)
+    apart = begin.motion.position - np.append(np.zeros(pair.count), 0.05 / pair.lever)
+    found = first(case, replace(begin, motion=replace(begin.motion, position=apart)), 6)
+    pushed = pair.drive.torque / pair.lever / (pair.drive.inertia / pair.lever**2)
+    times = np.array([moment.time for moment in found])
+    assert not any(moment.mesh_force for moment in found)
+    np.testing.assert_allclose([moment.rate for moment in found], pushed * times, rtol=1e-9)
+
+
 def test_friction_acts_from_the_first_step() -> None:
     """Away from the pitch point flanks slide from the start on: friction takes energy in the first time step."""
     case, start = resting(0.2)

@@ -13,14 +13,19 @@ MOST_POSITIONS = 1000
 """Of a mesh period, that a scene may have."""
 
 
-def unresolved(speed: float, natural: float, steps: float, positions: int) -> str:
+def unresolved(speed: float, natural: float, steps: float, positions: int, radius: float) -> str:
     """The sentence on too long time steps; empty where there are `ENOUGH_STEPS` of them.
 
     speed: of the pinion [r/min]. natural: frequency of the pair's own vibration [Hz]. steps: equal ones, in a period
-    of it. positions: of a mesh period, each of which ends a step.
+    of it. positions: of a mesh period, each of which ends a step. radius: transient.spectral_radius.
     """
     if steps >= ENOUGH_STEPS:
         return ""
+    if radius == 0.0:
+        return (
+            f"{_few(speed, natural, steps, 'time steps')}: what the mesh excites of it is not resolved, and with "
+            "transient.spectral_radius = 0 statics are what is left"
+        )
     wanted = positions * ENOUGH_STEPS / steps if steps else math.inf
     if wanted > MOST_POSITIONS:
         remedy = f"no sweep.positions up to {MOST_POSITIONS} resolves it: transient.spectral_radius = 0 leaves statics"

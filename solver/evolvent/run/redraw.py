@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from evolvent.dynamics.results.transient.kept_tables import PICTURE, KeptTables
+from evolvent.dynamics.results.transient.kept_tables import PICTURE, START_PICTURE, KeptTables
 from evolvent.dynamics.results.transient.rows import TRANSIENT
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
@@ -57,7 +57,13 @@ def _transient(out: Path) -> Drawn:
 
         return transient_picture(tables.title, tables.rows, tables.teeth, tables.facts)
 
-    return draw([Picture(PICTURE, drawn)], RunFolder(out))
+    def start_drawn() -> bytes:
+        from evolvent.dynamics.figures.transient_start import start_picture
+
+        return start_picture(tables.title, tables.started)
+
+    started = [Picture(START_PICTURE, start_drawn)] if tables.started else []
+    return draw([Picture(PICTURE, drawn), *started], RunFolder(out))
 
 
 def _with_pictures(run: RunData) -> RunData:

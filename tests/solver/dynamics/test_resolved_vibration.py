@@ -10,15 +10,17 @@ from evolvent.scene.schema.errors import keys_of
 
 
 def test_the_wanted_positions_resolve_it() -> None:
-    """3 steps a period at 20 positions: 134 positions have 20.1, 133 only 19.95. With 20 nothing is said."""
-    assert "sweep.positions = 134 resolves it" in unresolved(1500.0, 3800.0, 3.0, 20)
-    assert unresolved(1500.0, 3800.0, ENOUGH_STEPS, 20) == ""
+    """3 steps a period at 20 positions: 134 positions have 20.1, 133 only 19.95. With 20 nothing is said; with a
+    spectral radius of 0 no positions are asked for."""
+    assert "sweep.positions = 134 resolves it" in unresolved(1500.0, 3800.0, 3.0, 20, 0.8)
+    assert "statics are what is left" in unresolved(1500.0, 3800.0, 3.0, 20, 0.0)
+    assert unresolved(1500.0, 3800.0, ENOUGH_STEPS, 20, 0.8) == ""
 
 
 @pytest.mark.parametrize("steps", [0.1, 1e-300, 0.0])
 def test_slow_rotation_would_take_more_than_a_scene_may_have(steps: float) -> None:
     """Beyond 1600 positions: none is named, and the number that a scene may have is that of its schema."""
-    said = unresolved(1e-3, 3800.0, steps, 20)
+    said = unresolved(1e-3, 3800.0, steps, 20, 0.8)
     assert f"no sweep.positions up to {MOST_POSITIONS} resolves it" in said
     assert f"to {MOST_POSITIONS}" in str(keys_of(Scene)["sweep.positions"].json_schema_extra)
 

@@ -145,7 +145,7 @@ class StepSystem:
     def answering(
         self, step: Step, responses: Sequence[BodyResponse], motions: Sequence[RigidMotions], least_scale: float
     ) -> StepSystem:
-        """With the same pairs, in a step with the same placements; least_scale: see `CondensedSystem`."""
+        """With the same pairs, in a step whose placements must be the same; least_scale: see `CondensedSystem`."""
         other = copy(self)
         other.step, other.responses, other.motions, other.least_scale = step, responses, list(motions), least_scale
         other.__dict__.pop("compliance", None)  # cached

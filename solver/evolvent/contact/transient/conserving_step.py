@@ -52,7 +52,7 @@ class PlacedPairs:
         self._last: StepSystem | None = None
 
     def system(self, problem: Problem, condensed: tuple[CondensedBody, ...], step: Step) -> StepSystem:
-        """One with the pairs of `step`."""
+        """One with the pairs of `step`; its loads and motions are those of an earlier one."""
         last = self._last
         if last is None or last.problem is not problem or last.step.placements is not step.placements:
             last = self._last = StepSystem(problem, condensed, step)

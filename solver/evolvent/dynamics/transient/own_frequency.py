@@ -7,7 +7,9 @@ motions of modes and ψ have the mass matrix of the pair and
     K = [ Ω² + k_r s sᵀ   −k_r ℓ s ]
         [   −k_r ℓ sᵀ       k_r ℓ² ] .
 
-Without modes this is ω² = k/m.
+Without modes this is ω² = k/m. s are the forces by the whole contact force, not by a small change of it: the same where
+contact only grows, another one where a tooth pair just begins to bear. Positions at which the modes would give way more
+than the mesh, k Σ s²/ω² >= 1, are left out.
 """
 
 from __future__ import annotations
@@ -20,19 +22,29 @@ from scipy.linalg import eigh
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.member import Member
 
 
 def own_frequency(pair: MovingPair, static: Sequence[PositionResult]) -> float:
     """Of the mode that carries most of the static transmission error [Hz]: the root of the mean square of all positions
-    of a pitch."""
-    return float(np.sqrt(np.mean([_square(pair, position) for position in static]))) / (2.0 * np.pi)
+    of a pitch. Raises ResultError where modes give way more than the mesh at all of them."""
+    known = [square for square in (_square(pair, position) for position in static) if square is not None]
+    if not known:
+        raise ResultError(
+            "natural frequency of the pair: wanted modes that give way less than the whole mesh at some position, "
+            "found none; lower transient.modes_per_harmonic"
+        )
+    return float(np.sqrt(np.mean(known))) / (2.0 * np.pi)
 
 
-def _square(pair: MovingPair, position: PositionResult) -> float:
-    """ω² at a position."""
+def _square(pair: MovingPair, position: PositionResult) -> float | None:
+    """ω² at a position, None where modes give way more than the mesh."""
     s, Ω2 = _modal_forces(pair, position), pair.frequencies**2
-    rest = 1.0 / (1.0 / position.stiffness - float(np.sum(s**2 / Ω2)))
+    left = 1.0 / position.stiffness - float(np.sum(s**2 / Ω2))
+    if left <= 0.0:
+        return None
+    rest = 1.0 / left
     jump = np.append(-s, pair.lever)
     stiffness = np.diag(np.append(Ω2, 0.0)) + rest * np.outer(jump, jump)
     squares, shapes = eigh(stiffness, pair.system.mass)

@@ -67,7 +67,8 @@ def transient_warnings(scene: Scene) -> list[str]:
     if section is None or section.tolerance is not None:
         return []
     natural, count = natural_frequency(scene, section), scene.sweep.positions
-    said = [unresolved(each.speed, natural, each.a_period, count) for each in planned_steps(scene, section)]
+    radius = section.spectral_radius
+    said = [unresolved(each.speed, natural, each.a_period, count, radius) for each in planned_steps(scene, section)]
     return [f"{each} (natural frequency {BY_ISO})." for each in said if each]
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
+from evolvent.dynamics.transient.pair_state import SolvedStep
 from evolvent.dynamics.transient.steady_state import until_steady
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
@@ -94,3 +97,23 @@ def test_teeth_are_renumbered_after_a_pitch() -> None:
         motion.position, motion.velocity, motion.acceleration)))  # fmt: skip
     again = [moment.mesh_force for moment in fast.run(replace(start, motion=rounded), 1)]
     assert again == pytest.approx(once, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("damped_touches", "free_touches", "guess", "taken"),
+    [
+        (True, True, True, True), (True, True, False, True), (False, False, True, False),
+        (False, False, False, False), (False, True, True, False), (False, True, False, False),
+    ],
+)  # fmt: skip
+def test_damping_is_that_of_the_end(damped_touches: bool, free_touches: bool, guess: bool, taken: bool) -> None:
+    """Problem: whether flanks touch at the end of a step with the damping of the mesh and without, and what is tried
+    first. Exact: the damped end if flanks touch there, else the free one, also where only damping would keep them
+    apart; whatever is tried first."""
+    touches = {True: damped_touches, False: free_touches}
+
+    def ended(damped: bool) -> SolvedStep:
+        return cast(SolvedStep, SimpleNamespace(touches=touches[damped], damped=damped))
+
+    found = moving("spur", 0.0, 30.0, count=0)._damped_in_contact(guess, ended)
+    assert cast(SimpleNamespace, found).damped is taken

@@ -75,10 +75,10 @@ def test_speeds_that_are_not_resolved_are_warned_of() -> None:
 def test_tables_are_printed_with_their_sections_alone() -> None:
     """A scene without [transient] and [fatigue] has no such tables; with [fatigue] the criteria stand in one line,
     that of Fatemi and Socie with a yield stress alone."""
-    plain, text = overview(spur_scene()), overview(pair("fatigue.depths=[0,0.5,3]"))
+    plain, text = overview(spur_scene()), overview(pair("fatigue.depths=[0,0.02,0.05,0.1,0.5,3]"))
     assert "\nTransient contact" in text and "\nTime steps at each speed" in text
     (line,) = (line for line in text.splitlines() if "Dang Van" in line)
-    assert line.startswith("  3 depths down to 3 half-widths of the contact: contact pressure, ")
+    assert line.startswith("  6 depths down to 3 half-widths of the contact: contact pressure, ")
     assert "Fatemi-Socie" not in line
     assert "Fatemi-Socie" in overview(pair("fatigue.yield_stress_MPa=1500"))
     assert "Transient" not in plain and "Contact fatigue" not in plain

@@ -56,11 +56,12 @@ class TransientFacts:
     time_steps: int
     """In the last mesh period."""
     shortest_step_s: float
-    """The shortest of them."""
+    """The shortest of them; of a start from rest also of its first two mesh periods."""
     rejected_steps: int
     """That were taken again in half, in the last mesh period; none without transient.tolerance."""
     step_error: float
-    """The largest estimated error of the speeds in one of its time steps, as transient.tolerance bounds it."""
+    """The largest estimated error of the speeds in one of its time steps, as transient.tolerance bounds it; of a start
+    from rest also of its first two mesh periods."""
     mean_force_N: float
     """Of the mesh, over the last period."""
     load_N: float
@@ -129,13 +130,14 @@ def transient_facts(
         load = case.load
         motion = np.array([result.transmission_error for result in case.results])
         worst, energies, passed = found.residuals, found.energies, found.energies.passed
-        steps = found.steps
+        steps, every = found.steps, [moment.steps for moment in (*found.moments, *found.beginning)]
         step = (found.moments[-1].time - found.moments[-2].time) / (steps.accepted / len(found.moments))
         facts.append(TransientFacts(
             case.speed, case.friction, case.speed / 60.0 * model.pair.pinion.z, found.periods,
             float(found.changes[-1]) if len(found.changes) else None, found.is_steady, len(frequencies), lowest,
-            natural, bars.natural_frequency * natural, 1.0 / (natural * step), steps.accepted, steps.shortest,
-            steps.rejected, steps.error, width * found.mean_force, width * load,
+            natural, bars.natural_frequency * natural, 1.0 / (natural * step), steps.accepted,
+            min(each.shortest for each in every), steps.rejected, max(each.error for each in every),
+            width * found.mean_force, width * load,
             UM * float(np.ptp(motion)), bars.peak_to_peak_um,
             UM * float(np.ptp([still.transmission_error for still in case.static])), bars.static_peak_to_peak_um,
             steps.largest_force / load, bars.dynamic_factor,
@@ -155,14 +157,16 @@ def write_facts(folder: RunFolder, facts: Sequence[TransientFacts]) -> None:
     folder.write_text(TRANSIENT_FACTS, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
 
 
-def sentences(facts: Sequence[TransientFacts], positions: int, tolerance: float | None) -> list[str]:
+def sentences(
+    facts: Sequence[TransientFacts], positions: int, tolerance: float | None, radius: float
+) -> list[str]:
     """On motions that are not steady, and on speeds at which time steps are too long. positions: of a mesh period;
-    tolerance: of the estimated error of a step, None for equal steps."""
+    tolerance: of the estimated error of a step, None for equal steps. radius: transient.spectral_radius."""
     jitter = "" if tolerance is None else "lower transient.tolerance, as changes of the time step add jitter; else "
     unsteady = [
         f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: not steady after {fact.mesh_periods} mesh periods; "
         f"{jitter}raise transient.mesh_periods, or look whether the motion repeats after several meshes (`evolvent "
-        "dynamics`)"
+        "dynamics`); figures are those of the last mesh period"
         for fact in facts
         if not fact.steady
     ]
@@ -172,7 +176,7 @@ def sentences(facts: Sequence[TransientFacts], positions: int, tolerance: float 
         return [*unsteady, *beyond, *filter(None, divided.values())]
     coarse = {fact.speed_rpm: fact for fact in facts if fact.steps_per_natural_period < ENOUGH_STEPS}
     return unsteady + [
-        unresolved(speed, fact.natural_frequency_Hz, fact.steps_per_natural_period, positions) + _doubt(fact)
+        unresolved(speed, fact.natural_frequency_Hz, fact.steps_per_natural_period, positions, radius) + _doubt(fact)
         for speed, fact in coarse.items()
     ]
 

@@ -10,12 +10,13 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
+from evolvent.dynamics.results.transient.beginning import TRANSIENT_START, StartRow
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS, TransientFacts
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH, TransientRow, TransientToothRow
 from evolvent.results.archive.archive import ArchiveError
 
-PICTURE, SCENE = "transient.png", "transient.toml"
-T = TypeVar("T", TransientRow, TransientToothRow, TransientFacts)
+PICTURE, START_PICTURE, SCENE = "transient.png", "transient_start.png", "transient.toml"
+T = TypeVar("T", TransientRow, TransientToothRow, StartRow, TransientFacts)
 
 
 @dataclass(frozen=True)
@@ -30,13 +31,17 @@ class KeptTables:
     """Over the engagement of a tooth."""
     facts: Sequence[TransientFacts]
     """Of each case."""
+    started: Sequence[StartRow] = ()
+    """Over time, of motions from rest."""
 
     @staticmethod
     def read(folder: Path) -> KeptTables:
         """From OUT. Raises ArchiveError for a table that is missing, cut off or of another version."""
+        start = folder / TRANSIENT_START
         return KeptTables(
             _title(folder / SCENE), _table(folder / TRANSIENT, TransientRow),
             _table(folder / TRANSIENT_TEETH, TransientToothRow), _facts(folder / TRANSIENT_FACTS),
+            _table(start, StartRow) if start.exists() else (),
         )  # fmt: skip
 
 

@@ -2,8 +2,8 @@
 
 The flanks just touch, without load. The nominal rotation has both gears turn; a gear at rest lags behind it, by the
 speed of the line of action: r_b1 φ_1 − r_b2 φ_2 grows at r_b1 ω_1. The bodies do not vibrate, and all torques and the
-damping of the mesh act from then on, so that M a = p − D v at once. Where both gears are free it is their speed of approach; the nominal rotation is then that of both together,
-after the blow.
+damping of the mesh act from then on, so that M a = p − D v at once. Where both gears are free it is their speed of
+approach; the nominal rotation is then that of both together, after the blow.
 """
 
 from __future__ import annotations

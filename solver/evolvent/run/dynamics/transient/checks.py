@@ -7,7 +7,7 @@ from pathlib import Path
 
 from evolvent.dynamics.results.transient.beginning import TRANSIENT_START
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
-from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE
+from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE, START_PICTURE
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.folder_checks import require_unfinished
@@ -16,7 +16,7 @@ from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent_meshes.errors import InputError
 
 KEPT_STATIC, KEPT_CASES = "results/transient_static.npz", "results/transient_*.npz"
-START_PICTURE, ANIMATION = "transient_start.png", "field_of_action.gif"
+ANIMATION = "field_of_action.gif"
 UNUSED = "series_stiffness_N_per_um", "ground_damping_ratio", "mesh"
 """Keys of [dynamics]."""
 WRITTEN = (

@@ -12,7 +12,7 @@ from evolvent.dynamics.results.transient.beginning import beginnings, start_rows
 from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures, elements_across
 from evolvent.dynamics.results.transient.errors import MovingCompanion, case_errors
 from evolvent.dynamics.results.transient.facts import sentences, transient_facts, write_facts
-from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE
+from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE, START_PICTURE
 from evolvent.dynamics.results.transient.rows import tooth_rows, transient_rows, write_rows
 from evolvent.dynamics.transient.own_frequency import own_frequency
 from evolvent.dynamics.transient.steady_state import MeshPeriods
@@ -24,7 +24,6 @@ from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.transient.cases import PairCases, PairMeshes
 from evolvent.run.dynamics.transient.checks import (
     ANIMATION,
-    START_PICTURE,
     WRITTEN,
     prepared_folder,
     transient_section,
@@ -124,7 +123,8 @@ def _written(
     pictures = [Picture(PICTURE, drawn)] if output.pictures else []
     pictures += [Picture(START_PICTURE, start_drawn)] if output.pictures and started else []
     pictures += [Picture(ANIMATION, animated)] if output.animation else []
-    tolerance = transient_section(scene).tolerance
+    section, positions = transient_section(scene), scene.sweep.positions
+    said = sentences(facts, positions, section.tolerance, section.spectral_radius)
     coarse = coarse_contact(elements_across(pair.model, pressures))
     unknown = [f"{each.case.name}: {bars.said}" for each, bars in zip(pressures, errors) if bars.said]
-    return [*draw(pictures, folder).failures, *sentences(facts, scene.sweep.positions, tolerance), *coarse, *unknown]
+    return [*draw(pictures, folder).failures, *said, *coarse, *unknown]

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from evolvent.cli import main
+from evolvent.dynamics.results.transient.beginning import StartRow, write_start
 from evolvent.dynamics.results.transient.facts import write_facts
 from evolvent.dynamics.results.transient.kept_tables import SCENE, KeptTables
 from evolvent.dynamics.results.transient.rows import write_rows
@@ -40,6 +41,17 @@ def test_picture_is_drawn_again(out: Path, capsys: pytest.CaptureFixture[str]) -
     assert (out / "pictures/transient.png").stat().st_size > 10_000
     assert "1 pictures in" in capsys.readouterr().out
     assert {path: path.read_bytes() for path in before} == before
+
+
+def test_start_from_rest_is_drawn_again(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where its table is there; each value is read to nine digits."""
+    wanted = [StartRow(1500.0, μ, time, 1.0, 2.0, 0.1, 1.0, 3.0, 0.1, 1.0, 500.0, 5.0, 400.0)
+              for μ in (0.0, 0.1) for time in (1e-4, 2e-4)]  # fmt: skip
+    write_start(RunFolder(out), wanted)
+    assert KeptTables.read(out).started == wanted
+    assert main(["plot", str(out)]) == 0
+    assert (out / "pictures/transient_start.png").stat().st_size > 10_000
+    assert "2 pictures in" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", ["transient.csv", "transient_teeth.csv", "transient.json"])

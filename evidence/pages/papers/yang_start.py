@@ -36,6 +36,7 @@ def figures(runs: Runs, command: Callable[..., list[object]]) -> Named:
     folder, cost = runs.ended("rest", "transient.json", *command(*SETTINGS))
     (fact,) = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
     yield "rest_minutes", cost.cpu / 60.0
+    yield "natural_Hz", fact["natural_frequency_Hz"]
     yield from _one_degree(fact)
     rows = [{name: float(value) for name, value in row.items()} for row in read(folder / "transient_start.csv")]
     force = np.array([row["mesh_force_N"] for row in rows])
@@ -69,9 +70,8 @@ def sentence(kept: Mapping[str, float]) -> str:
         "at once and the wheel is at rest under its torque, without friction), the mesh force rises to "
         f"**{kept['rest_contact_ratio']:.1f} times the load** {kept['rest_contact_us']:.0f} µs after the flanks touch "
         f"({kept['rest_force_ratio']:.1f} times after {kept['rest_time_us']:.0f} µs by the wheel's inertia on the "
-        f"mean stiffness alone), they part after {kept['rest_parted_us']:.0f} µs (positions are 39 µs apart), and "
-        f"by up to "
-        f"{kept['rest_apart_um']:.0f} µm, given 1 mm of backlash: the drawn gears have none. In the first 0.0015 s "
+        f"mean stiffness alone), they part after {kept['rest_parted_us']:.0f} µs (positions are 39 µs apart), and by up "
+        f"to {kept['rest_apart_um']:.0f} µm, given 1 mm of backlash: the drawn gears have none. In the first 0.0015 s "
         f"they are apart {kept['rest_apart_percent']:.0f} % of the time, and the largest pressure is up to "
         f"{kept['rest_pressure_ratio']:.1f} times the static one. The paper's curves have nothing of the kind. If the "
         "speed rises evenly over the 0.0015 s instead, the wheel's acceleration adds "

@@ -113,7 +113,8 @@ def table(docs: Path) -> str:
         for speed in SPEEDS
     ]  # fmt: skip
     head = (
-        "speed [r/min]", "time steps in a period of the pair's own vibration", "its frequency, all inertia at the bores, over the mesh frequency",
+        "speed [r/min]", "time steps in a period of the pair's own vibration",
+        "its frequency, all inertia at the bores, over the mesh frequency",
         "mesh periods until steady", "largest mesh force over the load",
         "peak-to-peak transmission error over statics", "largest pressure over statics",
         "pressure of a tooth: largest difference from statics",

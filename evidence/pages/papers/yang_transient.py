@@ -54,7 +54,7 @@ def figures(runs: Runs) -> Named:
     yield from _of_cases(facts)
     yield from _of_teeth(folder)
     copy(folder / "pictures/transient.png", DOCS / PICTURE)
-    yield from yang_start.figures(facts[0])
+    yield from yang_start.figures(runs, command)
 
 
 def _of_cases(facts: list[dict[str, Any]]) -> Named:
@@ -114,8 +114,7 @@ def table(docs: Path) -> str:
     ]  # fmt: skip
     head = (
         "speed [r/min]", "time steps in a period of the pair's own vibration",
-        "its frequency, all inertia at the bores, over the mesh frequency",
-        "mesh periods until steady", "largest mesh force over the load",
+        "its frequency over the mesh frequency", "mesh periods until steady", "largest mesh force over the load",
         "peak-to-peak transmission error over statics", "largest pressure over statics",
         "pressure of a tooth: largest difference from statics",
         "friction, μ 0.07 to 0.30: pressure of a tooth at −25° to −10° / 10° to 30°",

@@ -74,7 +74,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears", "gears.contact", "gears.sweep", "dynamics", "dynamics.modes", "dynamics.transient.step_lengths",
     ),
     "dynamics.transient.starts": (
-        "meshes", "meshes.gears", "contact.transient.time_schemes", "gears", "gears.problem", "gears.sweep",
+        "meshes", "contact.transient.time_schemes", "gears", "gears.problem", "gears.sweep",
         "dynamics.excitation", "dynamics.transient",
     ),
     "strength.standard": ("meshes", "meshes.gears"),

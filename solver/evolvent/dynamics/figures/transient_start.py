@@ -8,16 +8,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from evolvent.dynamics.figures.transient import BAND, BANDS, STATIC
 from evolvent.dynamics.results.transient.beginning import StartRow
 from evolvent.results.drawing.style import foot, friction_colours, note, png, sheet, styled
 
 Colour = tuple[float, ...]
-BAND, BANDS = 0.15, 2
-"""Opacity of error bars, and friction coefficients up to which they are drawn: more bands hide each other."""
 LONG = 5
 """Entries of a legend in one column, at most one less."""
 UNKNOWN = float("nan")
-STATIC = {"ls": "--", "lw": 1.0}
 ROOM = 0.15
 """Above the curves, of the height of a panel."""
 SUBTITLE = (

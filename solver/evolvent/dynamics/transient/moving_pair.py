@@ -17,6 +17,7 @@ from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import MappedNodes
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
 
@@ -131,9 +132,12 @@ class MovingPair:
         moved = [g.modes.earlier(part, -member.sign * pitches) for member, g, part in zip(Member, self.gears, parts)]
         return np.concatenate([*moved, coordinates[self.count :]])
 
-    def on_modes(self, member: Member, rows: Ints, forces: Floats) -> Floats:
-        """Forces on the modes of a gear [N·mm per unit amplitude] by forces (k, d) on its rows (k, 2)."""
-        return np.asarray(np.einsum("kdm,kd->m", self.displacements(member, rows), forces))
+    def modal_forces(self, position: PositionResult) -> Floats:
+        """Forces (m,) on the modes of both gears by the contact forces of a position [N·mm per unit amplitude]."""
+        rows, forces = (position.pinion_rows, position.wheel_rows), (position.pinion_forces, position.wheel_forces)
+        return np.concatenate([
+            np.einsum("kdm,kd->m", self.displacements(member, rows[member]), forces[member]) for member in Member
+        ])
 
     def static(self, modal: Floats) -> Floats:
         """Amplitudes (m,) of the modes of both gears under forces (m,) on them, in statics."""

@@ -35,7 +35,7 @@ class NodalSums:
     def of(pair: MovingPair, searched: Stand, result: PositionResult) -> NodalSums:
         """searched: where the gears stood in the search, in whose frames the forces are."""
         rows, forces = (result.pinion_rows, result.wheel_rows), (result.pinion_forces, result.wheel_forces)
-        torques, resultants, about_pinion, modal = [], [], [], []
+        torques, resultants, about_pinion = [], [], []
         for member, own, force in zip(Member, rows, forces):
             body, d = pair.model.bodies[member], force.shape[1]
             points, R = _points(body, own), searched.rotation(member, d)
@@ -43,10 +43,10 @@ class NodalSums:
             torques.append(-_moment(points, force))
             resultants.append(pushed.sum(axis=0))
             about_pinion.append(_moment(placed, pushed))
-            modal.append(pair.on_modes(member, own, force))
         return NodalSums(
-            np.concatenate(modal), (torques[0], torques[1]), np.array(resultants), (about_pinion[0], about_pinion[1])
-        )
+            pair.modal_forces(result), (torques[0], torques[1]), np.array(resultants),
+            (about_pinion[0], about_pinion[1]),
+        )  # fmt: skip
 
 
 def _points(body: GearBody, rows: Ints) -> Floats:

@@ -23,7 +23,6 @@ from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
-from evolvent_meshes.gears.member import Member
 
 
 def own_frequency(pair: MovingPair, static: Sequence[PositionResult]) -> float:
@@ -53,7 +52,5 @@ def _square(pair: MovingPair, position: PositionResult) -> float | None:
 
 def _modal_forces(pair: MovingPair, position: PositionResult) -> Floats:
     """s (m,) on the modes of both gears."""
-    loaded = zip(Member, (position.pinion_rows, position.wheel_rows), (position.pinion_forces, position.wheel_forces))
-    modal = np.concatenate([pair.on_modes(member, rows, forces) for member, rows, forces in loaded])
     torque = sum(share * taken for share, taken in zip(pair.drive.shares, position.torques))
-    return modal * (pair.lever / torque)
+    return pair.modal_forces(position) * (pair.lever / torque)

@@ -48,11 +48,6 @@ class SchemeEnergy:
         α = self.scheme.alpha
         return -α * (1.0 - α) ** 2 / 16.0 * self.length**2 * self._square(after.acceleration - before)
 
-    def damped(self, begin: MotionState, end: MotionState) -> float:
-        """½ (v_n + v_{n+1})·D Δz of a step."""
-        mean = 0.5 * (begin.velocity + end.velocity)
-        return float(mean @ (self.system.damping * (end.position - begin.position)))
-
     def _square(self, x: Floats) -> float:
         """xᵀM x."""
         return float(x @ (self.system.mass @ x))

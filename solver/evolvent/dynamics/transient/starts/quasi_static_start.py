@@ -15,7 +15,6 @@ from evolvent.gears.sweep.friction_history import FrictionHistory
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.member import Member
 
 BEFORE = 4
 """Positions that are solved before the first one: friction then has a history."""
@@ -57,6 +56,4 @@ def quasi_static_starts(pair: MovingPair, step_angle: float, frictions: Sequence
 
 def _coordinates(pair: MovingPair, result: PositionResult) -> Floats:
     """Modes and ψ (m + 1,) of a static position."""
-    loaded = zip(Member, (result.pinion_rows, result.wheel_rows), (result.pinion_forces, result.wheel_forces))
-    modal = np.concatenate([pair.on_modes(member, rows, forces) for member, rows, forces in loaded])
-    return np.append(pair.static(modal), pair.drive.of(result.stand.extra, pair.base_radii))
+    return np.append(pair.static(pair.modal_forces(result)), pair.drive.of(result.stand.extra, pair.base_radii))

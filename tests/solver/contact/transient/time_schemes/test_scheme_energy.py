@@ -50,7 +50,8 @@ def imbalance(at: SchemeEnergy, step: Step) -> float:
     """Change of E less work, plus what damping and the method take out."""
     moved, mean = step.end.position - step.begin.position, 0.5 * (step.forces[0] + step.forces[1])
     change = at.of(step.end, step.begin.acceleration) - at.of(step.begin, step.before)
-    lost = at.damped(step.begin, step.end) + at.taken(step.before, step.end)
+    damped = 0.5 * (step.begin.velocity + step.end.velocity) @ (at.system.damping * moved)
+    lost = float(damped) + at.taken(step.before, step.end)
     return change - float(mean @ moved) + lost
 
 

@@ -40,8 +40,10 @@ class Step:
         """Change of E from this begin less work, plus what damping and the method take out, over E."""
         at, end = self.energy, self.end
         kept = at.of(end, self.begin.acceleration), at.of(begin, before)
-        lost = at.damped(begin, end) + at.taken(before, end)
-        return abs(kept[0] - kept[1] - float(self.forces @ (end.position - begin.position)) + lost) / sum(kept)
+        moved = end.position - begin.position
+        damped = 0.5 * (begin.velocity + end.velocity) @ (at.system.damping * moved)
+        lost = float(damped) + at.taken(before, end)
+        return abs(kept[0] - kept[1] - float(self.forces @ moved) + lost) / sum(kept)
 
 
 @pytest.mark.parametrize("spectral_radius", [0.0, 0.5, 1.0])

@@ -166,11 +166,6 @@ def plot(
 ) -> None:
     """Draw the pictures of a finished run again, and that of `evolvent transient`."""
     with reported():
-        missing = "no summary.json in it, and no transient.csv" if directory.is_dir() else "no such directory"
-        begun = " --resume" if (directory / "results/state.npz").exists() else ""
-        remedy = f"run `evolvent run SCENE.toml --out {directory}{begun}` first"
-        wanted = f"{directory}: found {missing}; allowed: the --out of a finished run or transient; remedy: {remedy}"
-        require(any((directory / name).is_file() for name in ("summary.json", "transient.csv")), wanted)
         from evolvent.run.redraw import plot_folder
 
         drawn = plot_folder(directory)

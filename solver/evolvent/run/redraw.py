@@ -7,7 +7,7 @@ from pathlib import Path
 
 from evolvent.dynamics.results.transient.kept_tables import PICTURE, START_PICTURE, KeptTables
 from evolvent.dynamics.results.transient.rows import TRANSIENT
-from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Drawn, Picture, draw
 from evolvent.results.figures.all import pictures
@@ -25,11 +25,25 @@ def plot_folder(out: Path) -> Drawn:
     out: folder with one of `DRAWN_AGAIN`. Pictures are drawn even where the scene asks for none, the animation of a run
     only where it does, that of a transient not: the contact lines are in none of its tables.
 
-    Raises SceneError, ArchiveError, WriteError; FolderError where a run is computing into the folder.
+    Raises SceneError, ArchiveError, WriteError; FolderError where there is neither, or where a run is computing into
+    the folder.
     """
+    _require_finished(out)
     with locked(out):
         drawn = _run(out) if (out / RUN).is_file() else Drawn((), ())
         return _both(drawn, _transient(out)) if (out / TRANSIENT).is_file() else drawn
+
+
+def _require_finished(out: Path) -> None:
+    """Raises FolderError where there is nothing to draw."""
+    if any((out / name).is_file() for name in DRAWN_AGAIN):
+        return
+    missing = f"no {RUN} in it, and no {TRANSIENT}" if out.is_dir() else "no such directory"
+    begun = " --resume" if (out / "results/state.npz").exists() else ""
+    raise FolderError(
+        f"{out}: found {missing}; allowed: the --out of a finished run or transient; remedy: run `evolvent run "
+        f"SCENE.toml --out {out}{begun}` first"
+    )
 
 
 def _both(first: Drawn, second: Drawn) -> Drawn:

@@ -79,6 +79,7 @@ def test_pictures_name_the_same_largest_pressure(run: RunData) -> None:
 def test_pictures_of_a_directory(run: RunData, tmp_path: Path) -> None:
     """A run on disk is drawn whole: all figures, the pair and an animation of as many frames as positions."""
     store(run, tmp_path)
+    (tmp_path / "summary.json").touch()
     drawn = plot_folder(tmp_path)
     assert not drawn.failures
     names = sorted(path.name for path in (tmp_path / "pictures").iterdir())

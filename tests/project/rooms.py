@@ -64,14 +64,15 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics.oscillator",
     ),
     "dynamics.modes": (
-        "meshes", "meshes.mesh", "meshes.sector", "fem", "fem.modes", "fem.condensation",
+        "meshes", "meshes.mesh", "meshes.sector", "fem", "fem.parallel", "fem.modes", "fem.condensation",
         "contact.nitsche",
         "gears.problem", "gears.meshing", "gears.two_level", "gears",
     ),
     "dynamics.transient.step_lengths": ("meshes", "contact.transient.time_schemes"),
     "dynamics.transient": (
-        "meshes", "meshes.gears", "contact.newton", "contact.transient.time_schemes", "gears.problem", "gears.ring",
-        "gears", "gears.contact", "gears.sweep", "dynamics", "dynamics.modes", "dynamics.transient.step_lengths",
+        "meshes", "meshes.gears", "fem.parallel", "contact.newton", "contact.transient.time_schemes",
+        "gears.problem", "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics",
+        "dynamics.modes", "dynamics.transient.step_lengths",
     ),
     "dynamics.transient.starts": (
         "meshes", "contact.transient.time_schemes", "gears", "gears.problem", "gears.sweep",

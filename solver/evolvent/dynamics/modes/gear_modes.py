@@ -12,6 +12,7 @@ from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces, Numbers
 from evolvent.dynamics.modes.ring_modes import RingModes, SectorMatrices, harmonics, modes_below, ring_modes
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.parallel.memory import return_free_memory
 from evolvent.fem.surface import surface_of
 from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
 from evolvent.gears.kinematics import spin, turn
@@ -90,6 +91,7 @@ def gear_modes(body: GearBody, choice: ModeChoice, mesh: MeshData | None = None)
         # traction-free there: the modes' own flux on a coarse flank is nothing but its error
         sector, traction, to_flank = mesh, None, FlankLattice.of(surface_of(mesh, "flank").points)
     found, moment, spun, functionals = _on_mesh(body, sector, traction, choice)
+    return_free_memory()  # of the factors, gigabytes; time steps want less at once
     if to_flank is not None:
         across = sp.kron(to_flank.interpolation(body.flank.points), sp.eye(body.d)).tocsr()
         functionals = across @ functionals

@@ -69,8 +69,10 @@ class KeptContacts:
         """
         multiple, half_width = round(predicted / self._spacing), WIDER * self.pair.model.half_width
         for _ in range(ROUNDS):
-            at = self._at(phase, multiple, half_width)
+            key = self.apart * phase, multiple, half_width
+            at = self.kept.get(key) or self._searched(phase * self.step_angle, multiple * self._spacing, half_width)
             found = solve(at)
+            self._keep(key, at)
             shift = float(found.motion[0]) / self._spacing
             if at.contact.geometry.reaches_rim(found.traction[:, 0] > 0.0):
                 half_width *= RIM
@@ -86,14 +88,10 @@ class KeptContacts:
             f"after {ROUNDS} searches; take more positions"
         )
 
-    def _at(self, phase: float, multiple: int, half_width: float) -> SearchedContact:
-        key = self.apart * phase, multiple, half_width
-        if key in self.kept:
-            return self.kept[key]
-        searched = self._searched(phase * self.step_angle, multiple * self._spacing, half_width)
-        if searched.bytes + sum(each.bytes for each in self.kept.values()) <= self.most:
-            self.kept[key] = searched
-        return searched
+    def _keep(self, key: tuple[float, int, float], at: SearchedContact) -> None:
+        """Where there is room. Once it is solved, so that what the solution derives from it is counted."""
+        if key not in self.kept and at.bytes + sum(each.bytes for each in self.kept.values()) <= self.most:
+            self.kept[key] = at
 
     def _searched(self, angle: float, ψ: float, half_width: float) -> SearchedContact:
         model = self.pair.model

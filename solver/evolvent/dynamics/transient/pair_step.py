@@ -21,6 +21,8 @@ from evolvent.contact.newton.equilibrium import Equilibrium, with_components
 from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeStep
 from evolvent.dynamics.transient.moving_pair import MovingPair
+from evolvent.fem.parallel.memory import array_bytes
+from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.contact.overlap_check import UnsearchedOverlap, overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent_meshes.arrays import Floats
@@ -45,10 +47,11 @@ class SearchedContact:
     teeth: tuple[int, ...]
     """Tooth pairs that may touch."""
 
-    @property
+    @cached_property
     def bytes(self) -> int:
-        """Of its matrices."""
-        return self.compliance.nbytes + self.modes.nbytes
+        """Of its matrices, and of what the search has found and a solution has derived from it so far, without the
+        gears."""
+        return self.compliance.nbytes + self.modes.nbytes + array_bytes(self.contact.geometry, GearBody)
 
     @cached_property
     def _unsearched(self) -> tuple[UnsearchedOverlap, ...]:

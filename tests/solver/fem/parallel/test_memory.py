@@ -1,14 +1,18 @@
-"""Stack allocator and freed memory: reuse, release, and the error beyond the memory of the machine."""
+"""Stack allocator, freed memory and what an object holds: reuse, release, error beyond the memory of the machine."""
 
 from __future__ import annotations
 
 import ctypes
 import os
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
-from evolvent.fem.parallel.memory import Stack, lazy_zeros
+from evolvent.fem.parallel.memory import Stack, array_bytes, lazy_zeros
+from evolvent_meshes.arrays import Floats
 from tests.support.running.processes import Run
 
 KEPT = """
@@ -77,6 +81,39 @@ def test_freed_arrays_stay_until_returned(run_script: Run) -> None:
     assert done.returncode == 0, done.stderr[-3000:]
     kept, returned = map(int, done.stdout.split())
     assert kept > 60e6 and returned < 10e6
+
+
+@dataclass(frozen=True)
+class Gear:
+    """What results share."""
+
+    stiffness: Floats
+
+
+@dataclass(frozen=True)
+class Found:
+    """A result with arrays, one of them in two places, and with what it has derived."""
+
+    gear: Gear
+    parts: tuple[Floats, ...]
+    matrix: sp.csr_matrix
+
+    @cached_property
+    def total(self) -> Floats:
+        """(n,)."""
+        return np.asarray(sum(self.parts))
+
+
+def test_arrays_are_counted_once() -> None:
+    """A result of twice the same 8 kB, a sparse matrix with three entries of 8 bytes and its indices, and a gear
+    that is not counted: the sum of these; once it has derived another 8 kB, these too."""
+    one = np.ones(1000)
+    found = Found(Gear(np.ones(5000)), (one, one), sp.identity(3, format="csr"))
+    indices = found.matrix.indices.nbytes + found.matrix.indptr.nbytes
+    assert array_bytes(found, Gear) == 8000 + 24 + indices
+    assert array_bytes(found, Found) == 0
+    assert found.total[0] == 2.0
+    assert array_bytes(found, Gear) == 16000 + 24 + indices
 
 
 def test_lazy_zeros_is_zero() -> None:

@@ -40,7 +40,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "zhang2023.md": {"points": zhang.points(docs), "differences": zhang.differences(docs)},
         docs / "fatigue.md": {"friction": yang_fatigue.friction_table(docs), "fitted": yang_fatigue.fitted_table(docs)},
         docs / "transient.md": {"bars": transient_bars.said(docs), "costs": transient_bar_costs.said(docs)},
-        docs / "transient_method.md": {"calculix": blow.table(docs)},
+        docs / "transient_method.md": {"calculix": blow.table(docs), "smeared": he_transient.smeared(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "studies.md": {

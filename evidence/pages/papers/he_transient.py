@@ -36,6 +36,8 @@ BORES = 36, 40, 70, 100
 """mm."""
 RESOLVING, STEPS = 2200, (16, 20, 40, 80)
 """r/min near a superharmonic, and time steps a mesh period there."""
+SMEARED, SPACINGS = 1600, (10, 20, 40, 80)
+"""The same where few steps smear a vibration, for docs/transient_method.md."""
 OWN_INERTIA = "own_inertia.toml"
 """The scene with the inertia of the gears as drawn, which changes with the bore."""
 
@@ -57,6 +59,9 @@ def figures(runs: Runs) -> Named:
         (fact,) = _transient(runs, f"steps_{positions}", _at([RESOLVING]), f"sweep.positions={positions}")
         yield from _motion(f"steps_{positions}", fact)
         yield f"steps_{positions}_a_period", fact["steps_per_natural_period"]
+    for positions in SPACINGS:
+        (fact,) = _transient(runs, f"smeared_{positions}", _at([SMEARED]), f"sweep.positions={positions}")
+        yield from _motion(f"smeared_{positions}", fact)
     for count in COUNTS:
         (fact,) = _transient(runs, f"count_{count}", f"transient.speeds_rpm=[{CONVERGED}]",
                              f"transient.modes_per_harmonic={count}", "transient.steady_change=0.0005")  # fmt: skip
@@ -196,6 +201,19 @@ def steps_table(docs: Path) -> str:
     rows = [(f"{n}", f"{f[f'steps_{n}_a_period']:.1f}", *_cell(f, f"steps_{n}").split(", ", 1)) for n in STEPS]
     head = "time steps a mesh period", "in a period of the pair's own", "peak to peak", "largest mesh force over load"
     return markdown(head, rows)
+
+
+def smeared(docs: Path) -> str:
+    """What every other position says of the error of the second fewest, and what it is."""
+    f = kept.kept(docs / KEPT, COMMAND)
+    force = {n: f[f"smeared_{n}_factor"] for n in SPACINGS}
+    every_other, own, *finer = SPACINGS
+    differ = " and ".join(f"by {force[n] - force[own]:.2f} from that of {n}" for n in finer)
+    return (
+        f"At {SMEARED} r/min the largest mesh force of He's pair over the load is {force[own]:.2f} with {own} time "
+        f"steps a mesh period. It differs by {abs(force[every_other] - force[own]):.2f} from that of {every_other}, "
+        f"{differ} (`{COMMAND}`).\n"
+    )
 
 
 def bores_table(docs: Path) -> str:

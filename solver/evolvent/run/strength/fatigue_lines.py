@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -23,6 +24,10 @@ FLAGS = {
     "at_depth_limit": "no maximum over the depth, at the first or last one from 0.2 half-widths down",
 }
 """Column that says where a value does not hold -> words."""
+NOTHING = (
+    "nothing evaluated: wanted contact between the tip-edge zones, found none at these positions; take more of them "
+    "(sweep.positions), or a pair with a longer path of contact"
+)
 Row = dict[str, str]
 
 
@@ -39,8 +44,12 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
             for criterion, place, name in SHOWN
             if (friction, criterion.name, place) in known
         ]
-        parts = [f"{_named(name, row)} {_value(row, friction != frictions[0])}" for name, row in shown]
-        yield "; ".join([f"μ = {float(friction):g}: {', '.join(parts)}", *_flags(shown)])
+        parts = [
+            f"{_named(name, row)} {_value(row, friction != frictions[0])}"
+            for name, row in shown if not math.isnan(float(row["value"]))
+        ]  # fmt: skip
+        found = [", ".join(parts), *_flags(shown)] if parts else [NOTHING]
+        yield f"μ = {float(friction):g}: {'; '.join(found)}"
 
 
 def _named(name: str, row: Row) -> str:

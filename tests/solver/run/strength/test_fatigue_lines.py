@@ -19,6 +19,17 @@ pinion,0.1,maximum_shear,below,310,MPa,,54.3,True,True,True,1.5
 wheel,0.05,contact_pressure,surface,900,MPa,30,0,False,False,False,0
 """
 
+NONE = """pinion,0.2,contact_pressure,surface,nan,MPa,nan,nan,False,False,False,nan
+pinion,0.2,dang_van,surface,nan,MPa,nan,nan,False,False,False,nan
+"""
+
+
+def test_nothing_evaluated_is_said(tmp_path: Path) -> None:
+    """Where no slice bears load between the tip-edge zones there is a sentence, and no "nan"."""
+    (tmp_path / "fatigue.csv").write_text(HEAD + FIRST + NONE)
+    _, line = fatigue_lines(tmp_path)
+    assert "nothing evaluated: wanted contact between the tip-edge zones" in line and "nan" not in line
+
 
 def test_a_line_a_friction_coefficient(tmp_path: Path) -> None:
     """Of the pinion; an error that is not known is left out, and the change of the first coefficient, which is none.

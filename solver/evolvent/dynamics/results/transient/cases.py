@@ -42,6 +42,12 @@ class TransientCase:
         """Positions of the last mesh period."""
         return tuple(moment.result for moment in self.found.moments)
 
+    @property
+    def first_periods(self) -> list[list[PositionResult]]:
+        """Positions of the first mesh periods from rest, period by period; none where it does not begin at rest."""
+        results, n = [moment.result for moment in self.found.beginning], len(self.found.moments)
+        return [results[k : k + n] for k in range(0, len(results), n)]
+
 
 @dataclass(frozen=True, eq=False)
 class CasePressures:
@@ -67,9 +73,11 @@ def elements_across(model: GearModel, pressures: Sequence[CasePressures]) -> flo
 
 
 def case_pressures(model: GearModel, cases: Sequence[TransientCase]) -> list[CasePressures]:
-    """Of all cases, between the same tip-edge zones."""
+    """Of all cases, between the same tip-edge zones: of all positions that are reported, those from rest included, as
+    tip edges bear further in under several times the load."""
     still = {case.friction: case.static for case in cases}  # the same at all speeds
-    columns = [*(case.results for case in cases), *still.values()]
+    begun = [period for case in cases for period in case.first_periods]
+    columns = [*(case.results for case in cases), *still.values(), *begun]
     found = pitch_pressures(model, [tuple(column[k] for column in columns) for k in range(len(columns[0]))])
     static = dict(zip(still, found[len(cases) :]))
     return [CasePressures(case, moving, static[case.friction]) for case, moving in zip(cases, found)]

@@ -71,8 +71,8 @@ class KeptContacts:
         for _ in range(ROUNDS):
             key = self.apart * phase, multiple, half_width
             at = self.kept.get(key) or self._searched(phase * self.step_angle, multiple * self._spacing, half_width)
-            found = solve(at)
             self._keep(key, at)
+            found = solve(at)
             shift = float(found.motion[0]) / self._spacing
             if at.contact.geometry.reaches_rim(found.traction[:, 0] > 0.0):
                 half_width *= RIM
@@ -89,8 +89,12 @@ class KeptContacts:
         )
 
     def _keep(self, key: tuple[float, int, float], at: SearchedContact) -> None:
-        """Where there is room. Once it is solved, so that what the solution derives from it is counted."""
-        if key not in self.kept and at.bytes + sum(each.bytes for each in self.kept.values()) <= self.most:
+        """Where there is room. It is taken to be as large as the largest of the others, which have been solved: what a
+        solution derives is counted there."""
+        if key in self.kept:
+            return
+        sizes = [each.bytes for each in self.kept.values()]
+        if sum(sizes) + max(sizes or [at.bytes]) <= self.most:
             self.kept[key] = at
 
     def _searched(self, angle: float, ψ: float, half_width: float) -> SearchedContact:

@@ -49,9 +49,10 @@ class SearchedContact:
 
     @cached_property
     def bytes(self) -> int:
-        """Of its matrices, and of what the search has found and a solution has derived from it so far, without the
-        gears."""
-        return self.compliance.nbytes + self.modes.nbytes + array_bytes(self.contact.geometry, GearBody)
+        """Memory of its matrices, of what the search has found, and of what solutions have derived from it when this is
+        first asked for; without the gears."""
+        others = [value for name, value in vars(self).items() if name != "compliance"]
+        return self.compliance.nbytes + array_bytes(others, GearBody)
 
     @cached_property
     def _unsearched(self) -> tuple[UnsearchedOverlap, ...]:

@@ -42,14 +42,16 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
         shown = [
             (name, known[friction, criterion.name, place])
             for criterion, place, name in SHOWN
-            if (friction, criterion.name, place) in known
+            if (friction, criterion.name, place) in known and _is_known(known[friction, criterion.name, place]["value"])
         ]
-        parts = [
-            f"{_named(name, row)} {_value(row, friction != frictions[0])}"
-            for name, row in shown if not math.isnan(float(row["value"]))
-        ]  # fmt: skip
+        parts = [f"{_named(name, row)} {_value(row, friction != frictions[0])}" for name, row in shown]
         found = [", ".join(parts), *_flags(shown)] if parts else [NOTHING]
         yield f"μ = {float(friction):g}: {'; '.join(found)}"
+
+
+def _is_known(text: str) -> bool:
+    """Whether a number of the table is one."""
+    return not math.isnan(float(text))
 
 
 def _named(name: str, row: Row) -> str:
@@ -60,8 +62,9 @@ def _named(name: str, row: Row) -> str:
 
 
 def _value(row: Row, changed: bool) -> str:
-    """With its error bar. changed: with its change too."""
+    """With its error bar. changed: with its change too, where it is known."""
     value = plus_minus(float(row["value"]), float(row["value_error"] or "nan"), 0)
+    changed &= _is_known(row["change_at_points_percent"])
     change = f" ({float(row['change_at_points_percent']):+.1f} %)" if changed else ""
     return f"{value} {row['unit']}{change}"
 

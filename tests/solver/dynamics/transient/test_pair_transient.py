@@ -80,11 +80,24 @@ def test_contacts_that_are_not_kept_are_searched_again() -> None:
     """Without room for any, and with room for some: the same forces to the last digit."""
     fast = moving("spur", 0.2, 2000.0)
     wanted = [moment.mesh_force for moment in moments(fast, 2)]
-    one = next(iter(fast.contacts.kept.values())).bytes
+    one = max(each.bytes for each in fast.contacts.kept.values())
     for most, count in ((0.0, 0), (3.5 * one, 3)):
         kept = KeptContacts(fast.pair, POSITIONS, fast.contacts.components, most)
         assert [moment.mesh_force for moment in moments(replace(fast, contacts=kept), 2)] == wanted
         assert len(kept.kept) in (count, count + 1)
+
+
+def test_contacts_are_counted_as_solved() -> None:
+    """Two mesh periods: the memory of every contact but the first one, when it was first counted, has all that
+    solutions derived from it, several times its matrix. The first is counted before there are others."""
+    fast = moving("helical", 0.2, 2000.0)
+    moments(fast, 2)
+    _, *others = fast.contacts.kept.values()
+    counted = [each.bytes for each in others]
+    for each in others:
+        vars(each).pop("bytes")
+    assert [each.bytes for each in others] == counted
+    assert all(size > 2 * each.compliance.nbytes for size, each in zip(counted, others))
 
 
 def test_teeth_are_renumbered_after_a_pitch() -> None:

@@ -25,9 +25,12 @@ pinion,0.2,dang_van,surface,nan,MPa,nan,nan,False,False,False,nan
 
 
 def test_nothing_evaluated_is_said(tmp_path: Path) -> None:
-    """Where no slice bears load between the tip-edge zones there is a sentence, and no "nan"."""
+    """Where no slice bears load between the tip-edge zones there is a sentence, and no "nan"; where that is so at the
+    first coefficient alone, the others have no change."""
     (tmp_path / "fatigue.csv").write_text(HEAD + FIRST + NONE)
     _, line = fatigue_lines(tmp_path)
+    (tmp_path / "fatigue.csv").write_text(HEAD + NONE + "pinion,0.3,dang_van,surface,90,MPa,,0,False,False,False,nan\n")
+    assert list(fatigue_lines(tmp_path))[1] == "μ = 0.3: Dang Van at the surface 90 MPa"
     assert "nothing evaluated: wanted contact between the tip-edge zones" in line and "nan" not in line
 
 

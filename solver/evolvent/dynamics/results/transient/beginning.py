@@ -48,8 +48,8 @@ class StartRow:
     load_N: float
     """Of which the motion is at rest in the mean, see transient.json."""
     max_pressure_MPa: float
-    """Largest fitted peak pressure between the tip-edge zones, which are those of these positions, of the last mesh
-    period and of statics together; NaN where all contact lies in these, or nothing touches."""
+    """Largest fitted peak pressure between the tip-edge zones of transient.csv; NaN where all contact lies in these, or
+    nothing touches."""
     max_pressure_MPa_error: float
     """Its estimated error, likewise."""
     static_max_pressure_MPa: float

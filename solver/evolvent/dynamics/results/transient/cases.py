@@ -73,8 +73,8 @@ def elements_across(model: GearModel, pressures: Sequence[CasePressures]) -> flo
 
 
 def case_pressures(model: GearModel, cases: Sequence[TransientCase]) -> list[CasePressures]:
-    """Of all cases, between the same tip-edge zones: of all positions that are reported, those from rest included, as
-    tip edges bear further in under several times the load."""
+    """Of all cases, between the same tip-edge zones: of all positions that are reported, those from rest too, as tip
+    edges bear further in under several times the load."""
     still = {case.friction: case.static for case in cases}  # the same at all speeds
     begun = [period for case in cases for period in case.first_periods]
     columns = [*(case.results for case in cases), *still.values(), *begun]

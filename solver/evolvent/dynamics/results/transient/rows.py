@@ -48,7 +48,8 @@ class TransientRow:
     wheel_torque_Nm: float
     """About the wheel's axis."""
     max_pressure_MPa: float
-    """Largest fitted peak pressure between the tip-edge zones; NaN where all contact lies in these, or nothing
+    """Largest fitted peak pressure between the tip-edge zones, which all cases have in common: of their last mesh
+    periods, of statics and, from rest, of their first mesh periods. NaN where all contact lies in these, or nothing
     touches."""
     max_pressure_MPa_error: float
     """Its estimated error, likewise."""
@@ -74,7 +75,7 @@ class TransientToothRow:
     static_normal_force_N: float
     """The same without inertia."""
     max_pressure_MPa: float
-    """Largest fitted peak pressure between the tip-edge zones."""
+    """Largest fitted peak pressure between the tip-edge zones of transient.csv."""
     max_pressure_MPa_error: float
     """Its estimated error, likewise."""
     static_max_pressure_MPa: float

@@ -36,7 +36,7 @@ from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.errors import EvolventError
 
 MODES, STEPS = "natural modes", "mesh periods"
-KEPT = 0.5
+KEPT = 0.4
 """Of the machine's memory: what the contacts of positions may take, beside the gears."""
 FIRST = 2
 """Mesh periods from rest that are reported."""

@@ -46,8 +46,9 @@ def few_cells(problem: GearProblem, member: Member) -> LevelledMesh:
 @pytest.mark.slow
 def test_each_torque_has_the_gears_that_it_would_have_alone() -> None:
     """The light torque takes two levels, the heavy one the first of them; the compliance is that of gears condensed for
-    this torque alone, on its own meshes, 1e-10: products of other sizes are rounded otherwise, to nothing with Debian
-    12's libraries and to 2e-11 with Debian 13's. Time counts once."""
+    this torque alone, on its own meshes, 1e-9: products of other sizes are rounded otherwise, by up to the
+    condition number of the sector's stiffness, 6e7, times 1e-16. It is nothing with Debian 12's libraries and 1.2e-10
+    with Debian 13's. Time counts once."""
     light, heavy = problems()
     assert [len(levelled_sector(each, Member.PINION).levels) for each in (light, heavy)] == [2, 1]
     gears = LoadList([light, heavy])
@@ -62,7 +63,7 @@ def test_each_torque_has_the_gears_that_it_would_have_alone() -> None:
             rows = own.rows(0, np.arange(len(own.flank.points)))
             force = np.random.default_rng(0).normal(size=(len(rows), 3))
             moved, wanted = (body.chain.apply(rows, force, rows) for body in (own, other))
-            assert np.abs(moved - wanted).max() <= 1e-10 * np.abs(wanted).max()
+            assert np.abs(moved - wanted).max() <= 1e-9 * np.abs(wanted).max()
 
 
 def test_gears_of_one_mesh_are_condensed_once(monkeypatch: pytest.MonkeyPatch) -> None:

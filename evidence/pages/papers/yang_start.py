@@ -33,9 +33,8 @@ SETTINGS = (
 
 def figures(runs: Runs, command: Callable[..., list[object]]) -> Named:
     """(name, value) of each figure. command: of the scene with settings. Raises RunFailed."""
-    folder, cost = runs.ended("rest", "transient.json", *command(*SETTINGS))
+    folder, _ = runs.ended("rest", "transient.json", *command(*SETTINGS))
     (fact,) = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
-    yield "rest_minutes", cost.cpu / 60.0
     yield "natural_Hz", fact["natural_frequency_Hz"]
     yield from _one_degree(fact)
     rows = [{name: float(value) for name, value in row.items()} for row in read(folder / "transient_start.csv")]

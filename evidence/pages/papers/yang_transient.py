@@ -125,7 +125,7 @@ def table(docs: Path) -> str:
 
 
 def frictions_table(docs: Path) -> str:
-    """Every case."""
+    """Transmission error and largest pressure at each friction coefficient, in statics and at both speeds."""
     f = kept.kept(docs / KEPT, COMMAND)
     first = SPEEDS[0]
     rows = [

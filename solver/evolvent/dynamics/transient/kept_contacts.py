@@ -69,9 +69,7 @@ class KeptContacts:
         """
         multiple, half_width = round(predicted / self._spacing), WIDER * self.pair.model.half_width
         for _ in range(ROUNDS):
-            key = self.apart * phase, multiple, half_width
-            at = self.kept.get(key) or self._searched(phase * self.step_angle, multiple * self._spacing, half_width)
-            self._keep(key, at)
+            at = self._at(phase, multiple, half_width)
             found = solve(at)
             shift = float(found.motion[0]) / self._spacing
             if at.contact.geometry.reaches_rim(found.traction[:, 0] > 0.0):
@@ -88,14 +86,17 @@ class KeptContacts:
             f"after {ROUNDS} searches; take more positions"
         )
 
-    def _keep(self, key: tuple[float, int, float], at: SearchedContact) -> None:
-        """Where there is room. It is taken to be as large as the largest of the others, which have been solved: what a
-        solution derives is counted there."""
+    def _at(self, phase: float, multiple: int, half_width: float) -> SearchedContact:
+        """Kept, or searched, and then kept where there is room. It is taken to be as large as the largest of those that
+        are kept, which have been solved: what a solution derives is counted there."""
+        key = self.apart * phase, multiple, half_width
         if key in self.kept:
-            return
+            return self.kept[key]
+        searched = self._searched(phase * self.step_angle, multiple * self._spacing, half_width)
         sizes = [each.bytes for each in self.kept.values()]
-        if sum(sizes) + max(sizes or [at.bytes]) <= self.most:
-            self.kept[key] = at
+        if sum(sizes) + max(sizes or [searched.bytes]) <= self.most:
+            self.kept[key] = searched
+        return searched
 
     def _searched(self, angle: float, ψ: float, half_width: float) -> SearchedContact:
         model = self.pair.model

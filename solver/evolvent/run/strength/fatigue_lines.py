@@ -36,13 +36,13 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
     the points of the flank, in the median, from the folder's table; and which of them do not hold."""
     with open(folder / FATIGUE, encoding="utf-8") as stream:
         rows = [row for row in csv.DictReader(stream) if row["gear"] == Member.PINION.label]
-    known = {(row["friction"], row["criterion"], row["place"]): row for row in rows}
+    known = {(row["friction"], row["criterion"], row["place"]): row for row in rows if _is_known(row["value"])}
     frictions = list(dict.fromkeys(row["friction"] for row in rows))
     for friction in frictions:
         shown = [
             (name, known[friction, criterion.name, place])
             for criterion, place, name in SHOWN
-            if (friction, criterion.name, place) in known and _is_known(known[friction, criterion.name, place]["value"])
+            if (friction, criterion.name, place) in known
         ]
         parts = [f"{_named(name, row)} {_value(row, friction != frictions[0])}" for name, row in shown]
         found = [", ".join(parts), *_flags(shown)] if parts else [NOTHING]

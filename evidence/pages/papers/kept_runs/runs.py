@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import argparse
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from evidence.checkout import ROOT
 from evidence.pages.papers.kept_runs import kept
 from evidence.pages.papers.kept_runs.kept import Named
-from evidence.processes import Command, Cost, run
+from evidence.processes import Command, Cost, RunFailed, run
 
 TIME_LIMIT = 7200.0  # s
 Row = dict[str, str]
@@ -25,14 +25,36 @@ class Runs:
     out: Path
 
     def ended(self, name: str, leaves: str, *words: object) -> tuple[Path, Cost]:
-        """The folder of a run and what it took. words: of the command. leaves: its last file. Raises RunFailed."""
+        """The folder of a run and what it took. words: of the command. leaves: its last file. Raises RunFailed, also
+        where the run that has ended there had other words."""
         folder, cost = self.out / name, self.out / f"{name}.cost.csv"
-        if not ((folder / leaves).exists() and cost.exists()):
+        if (folder / leaves).exists() and cost.exists():
+            self._require_same(name, words)
+        else:
             self.out.mkdir(parents=True, exist_ok=True)
             took = run(Command((*map(str, words), "--out", str(folder)), ROOT, self.out / f"{name}.log",
                                time_limit=TIME_LIMIT))  # fmt: skip
+            self._words(name).write_text(_without_checkout(words), encoding="utf-8")
             cost.write_text(f"{took.wall},{took.cpu},{took.memory_MB}", encoding="utf-8")
         return folder, Cost(*map(float, cost.read_text(encoding="utf-8").split(",")))
+
+    def _words(self, name: str) -> Path:
+        return self.out / f"{name}.command.txt"
+
+    def _require_same(self, name: str, words: Sequence[object]) -> None:
+        """Raises RunFailed unless the run of this name had these words."""
+        path, wanted = self._words(name), _without_checkout(words)
+        found = path.read_text(encoding="utf-8") if path.exists() else "of an unknown command"
+        if found != wanted:
+            raise RunFailed(
+                f"{self.out / name}: wanted a run of\n{wanted}\nfound one that ended before,\n{found}\n"
+                "take another --out, or remove it"
+            )
+
+
+def _without_checkout(words: Sequence[object]) -> str:
+    """The words of a command behind its program, one a line: the same wherever the checkout lies."""
+    return "\n".join(str(word).replace(str(ROOT), ".") for word in words[1:])
 
 
 def read(path: Path) -> list[Row]:

@@ -11,9 +11,12 @@ from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
 from evolvent.dynamics.transient.step_balance import StepEnd
 from evolvent.dynamics.transient.step_lengths.changed_length import motion_energy, step_error, stretched
+from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.sweep.contact_patch import ContactPatch
-from evolvent.gears.sweep.friction_history import FrictionHistory
+from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump, previous_jumps
+from evolvent.gears.sweep.slip import work_beyond_nominal
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,17 @@ class PairState:
     """At the end of the step before [N; N/mm in 2D], None where there is no step before."""
     energy: float = 0.0
     """The largest so far, of vibration, modes, static rest and contact [N·mm; N in 2D]."""
+
+    def previous_jump(self, pair: MovingPair, geometry: ContactGeometry) -> PreviousJump | None:
+        """Friction history interpolated to the nodes of a contact, None without friction."""
+        if self.history is None:
+            return None
+
+        def vibration(member: Member) -> Floats:
+            return pair.vibration(member, geometry.rows(member)[0], self.vibration)
+
+        (before,) = previous_jumps(geometry, [self.history], vibration)
+        return before
 
     def for_step(self, pair: MovingPair, scheme: TimeScheme, length: float) -> PairState:
         """The same for a step of this length [s]. The first step begins without a past, and needs nothing of it."""
@@ -67,6 +81,15 @@ class SolvedStep:
     """At its end."""
     stored: float
     """Energy of rest and contact there."""
+    previous: PreviousJump | None
+    """Friction history at this contact, None without friction."""
+
+    @property
+    def slipped(self) -> float:
+        """Work of friction beyond that in the nominal sliding [N·mm; N in 2D]."""
+        if self.previous is None or self.begin.history is None:
+            return 0.0
+        return work_beyond_nominal(self.at.contact, self.found, self.previous, self.begin.history)
 
     @property
     def touches(self) -> bool:

@@ -28,7 +28,7 @@ from evolvent.gears.contact.pair_contact import GearContact
 from evolvent_meshes.arrays import Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SearchedContact:
     """The contact of a position as searched, with k components, n·k jumps and m modes: no state enters it."""
 

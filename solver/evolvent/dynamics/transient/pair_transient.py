@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import cache, reduce
 
 import numpy as np
 
-from evolvent.contact.newton.equilibrium import Equilibrium, frictional, frictionless, normal_part
+from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
 from evolvent.dynamics.transient.certificates import WITHIN, certify_step
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
@@ -25,12 +25,10 @@ from evolvent.dynamics.transient.step_balance import Residuals, StepBalance, Ste
 from evolvent.dynamics.transient.step_lengths.divided_steps import UNDIVIDED, DividedSteps, StepsTaken, part
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.contact_patch import ContactPatch
-from evolvent.gears.sweep.friction_history import FrictionHistory, previous_jumps
+from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump
+from evolvent.gears.sweep.frictional_position import frictional_equilibrium
 from evolvent.gears.sweep.position_result import PositionResult, position_result
-from evolvent.gears.sweep.slip import slip_direction, slip_increment
-from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
-from evolvent_meshes.gears.member import Member
 
 NO_STIFFNESS = float("nan")
 """A moving pair's positions have no tangent stiffness."""
@@ -153,13 +151,16 @@ class PairTransient:
         begin, length = state.for_step(self.pair, self.scheme, way * self.time_step), way * self.time_step
         predicted = float(begin.motion.position[-1] + length * begin.motion.velocity[-1])
         span, phase = way * self.contacts.step_angle, self._phase(n, reached + way)
+        previous = cache(lambda at: begin.previous_jump(self.pair, at.contact.geometry))
 
         def ended(touching: bool) -> SolvedStep:
             system = self.pair.system if touching else self.pair.system_apart
             step = PairStep(self.pair, TimeStep(system, self.scheme, begin.motion, length))
-            at, found = self.contacts.solved(phase, predicted, lambda at: self._equilibrium(step, at, begin, span))
+            at, found = self.contacts.solved(
+                phase, predicted, lambda at: self._equilibrium(step, at, begin.patch, previous(at), span)
+            )
             stored = stored_energy(self.pair, at, found)
-            return SolvedStep(step, begin, halvings, at, found, step.state(at, found), stored)
+            return SolvedStep(step, begin, halvings, at, found, step.state(at, found), stored, previous(at))
 
         return self._damped_in_contact(begin.mesh_force != 0.0, ended)
 
@@ -173,20 +174,17 @@ class PairTransient:
         other = ended(not guess)
         return other if guess or other.touches else first
 
-    def _equilibrium(self, step: PairStep, at: SearchedContact, state: PairState, span: float) -> Equilibrium:
-        """Of the contact at the end of a step in which the pinion turns by `span` [rad]. Raises NotConverged."""
+    def _equilibrium(
+        self, step: PairStep, at: SearchedContact, patch: ContactPatch | None, before: PreviousJump | None, span: float
+    ) -> Equilibrium:
+        """Of the contact at the end of a step in which the pinion turns by `span` [rad]. patch: of the last contact;
+        before: friction history at this one. Raises NotConverged."""
         system, geometry = step.system(at), at.contact.geometry
-        start = None if state.patch is None else state.patch.at(geometry)
+        start = None if patch is None else patch.at(geometry)
         smooth = frictionless(normal_part(system), start if start is not None and start.any() else None)
-        if state.history is None:
+        if before is None:
             return smooth
-
-        def vibration(member: Member) -> Floats:
-            return self.pair.vibration(member, geometry.rows(member)[0], state.vibration)
-
-        (before,) = previous_jumps(geometry, [state.history], vibration)
-        slip = slip_increment(geometry, before, span)
-        rough = frictional(system, self.friction, slip, slip_direction(geometry), smooth)
+        rough = frictional_equilibrium(geometry, system, self.friction, smooth, before, span)
         return replace(rough, iterations=smooth.iterations + rough.iterations)
 
     def _moment(self, solved: SolvedStep, reached: float, rejected: int) -> MovingMoment:
@@ -197,7 +195,7 @@ class PairTransient:
             position_result(pair.model, at.contact, found, self.friction, NO_STIFFNESS, 0), stand=stand
         )
         sums, span = NodalSums.of(pair, at.contact.stand, result), part(solved.halvings) * self.contacts.step_angle
-        balance = StepBalance(solved.step, span, motion, result, sums, solved.stored)
+        balance = StepBalance(solved.step, span, motion, result, sums, solved.stored, solved.slipped)
         turned = at.turned.reshape(found.force.shape[0], at.k)[:, : found.force.shape[1]]
         force, length = float(np.sum(turned * found.force)) / pair.lever, solved.step.step.length
         state = PairState(

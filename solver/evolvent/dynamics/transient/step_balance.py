@@ -14,8 +14,9 @@ and the normals are those before deflection. Over a step
     rotation = given + friction + stored + (what is left)
 
 rotation: ½ Σ (T_1 − T_2/u) Δφ, what the nominal rotation puts in at the pinion less what it takes out at the wheel;
-given: to modes and ψ; friction: of the nominal sliding; stored: ½ fᵀC_r f and ∫ (λ²/γ + τ²/γ_t)/2. Over a mesh period
-of a steady motion nothing is stored, and what is left corresponds to `pitch_imbalance` of statics.
+given: to modes and ψ; friction: in the nominal sliding, by the power at both ends, and in the slip beyond it, see
+`work_beyond_nominal`; stored: ½ fᵀC_r f and ∫ (λ²/γ + τ²/γ_t)/2. Over a mesh period of a steady motion nothing is
+stored, and what is left corresponds to `pitch_imbalance` of statics.
 """
 
 from __future__ import annotations
@@ -109,7 +110,7 @@ class StepEnd:
     damping: Floats
     """D v (m + 1,) at its end."""
     powers: tuple[float, float]
-    """Of rotation and friction at its end, per radian of the pinion [N·mm; N in 2D]."""
+    """Of rotation and of friction in the nominal sliding at its end, per radian of the pinion [N·mm; N in 2D]."""
     motion: float
     """Energy of modes and ψ as the scheme keeps it."""
     stored: float
@@ -147,6 +148,8 @@ class StepBalance:
     """Of its contact forces."""
     stored: float
     """Energy of rest and contact, see `stored_energy`."""
+    slipped: float
+    """Work of friction beyond that in the nominal sliding, see `work_beyond_nominal`."""
 
     @cached_property
     def end(self) -> StepEnd:
@@ -169,7 +172,7 @@ class StepBalance:
         given = float(mean @ moved) - drive.torque * float(moved[-1])
         rotation, friction = (0.5 * self.span * (one + other) for one, other in zip(before.powers, end.powers))
         return StepEnergies(
-            passed, rotation, given, friction, end.stored - before.stored, float(damping @ moved),
+            passed, rotation, given, friction + self.slipped, end.stored - before.stored, float(damping @ moved),
             self._energy.taken(before.acceleration, self.state) - before.converted,
         )  # fmt: skip
 

@@ -91,6 +91,19 @@ def previous_jumps(
     return [PreviousJump(each.stand, _jump(geometry, each.stand, *u)) for each, *u in zip(histories, u1, u2)]
 
 
+def previous_friction(geometry: ContactGeometry, history: FrictionHistory) -> Floats:
+    """(n, d−1) tangential contact forces of then on the nodes of the present contact, in the local frames of now
+    [N; per mm of width in 2D]. Those on nodes that the present contact does not have are left out."""
+    rows, teeth = geometry.rows(Member.PINION)
+    forces = np.zeros((len(rows), geometry.d))
+    then, now = _shared_rows(history, rows)
+    forces[now] = history.forces[Member.PINION][then]
+    R = geometry.stand.rotation(Member.PINION, geometry.d)
+    turned = np.concatenate([forces[each] @ R.T for each in teeth])
+    local: Floats = -np.einsum("jia,ja->ji", geometry.operator.frames, turned)  # −f acts on the pinion
+    return local[:, 1:]
+
+
 def _on_loaded_teeth(rows: Ints, forces: Floats) -> Bools:
     """(m,) bool: the rows of teeth that carry load."""
     size = np.abs(forces).max(axis=1)
@@ -123,10 +136,16 @@ def _displacements(geometry: ContactGeometry, histories: Sequence[FrictionHistor
     forces = np.stack([history.forces[gear] for history in histories])
     u = geometry.bodies[gear].chain.apply(before[gear], forces, rows)
     if gear == Member.PINION:
-        both = _row_keys(before[gear]), _row_keys(rows)
-        _, then, now = np.intersect1d(*both, assume_unique=True, return_indices=True)
+        then, now = _shared_rows(histories[0], rows)
         u[:, now] += np.stack([history.flux for history in histories])[:, then]
     return u
+
+
+def _shared_rows(history: FrictionHistory, rows: Ints) -> tuple[Ints, Ints]:
+    """Which of the history's rows of the pinion are among the `rows` (m, 2) of now, and which of these they are."""
+    both = _row_keys(history.rows[Member.PINION]), _row_keys(rows)
+    _, then, now = np.intersect1d(*both, assume_unique=True, return_indices=True)
+    return then, now
 
 
 def _row_keys(rows: Ints) -> Ints:

@@ -1,12 +1,15 @@
-"""The slip between the flanks of a gear pair over the step from the previous position."""
+"""The slip between the flanks of a gear pair over the step from the previous position, and the work of friction in it.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.gears.contact.contact_geometry import ContactGeometry, relative_velocity
+from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.kinematics import nominal_slip
-from evolvent.gears.sweep.friction_history import PreviousJump
+from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump, previous_friction
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -19,9 +22,29 @@ def slip_increment(geometry: ContactGeometry, before: PreviousJump, span: float)
     pair, rate = geometry.stand.pair, relative_velocity(geometry)
     ξ, ξ_before = geometry.roll_distance, geometry.roll_distance - pair.pinion.base_radius * span
     slip = nominal_slip(rate[:, 1:], ξ, ξ_before, slip_growth_direction(geometry), pair.ratio, span)
-    for gear in Member:
-        slip = slip + geometry.spins[gear][:, 1:] * (geometry.stand.extra[gear] - before.stand.extra[gear])
-    return slip - before.jump[:, 1:]
+    return slip + _beyond_nominal(geometry, before)
+
+
+def work_beyond_nominal(
+    contact: GearContact, found: Equilibrium, before: PreviousJump, history: FrictionHistory
+) -> float:
+    """Work that friction takes over the step since the previous position beyond that in the nominal sliding, where the
+    free rotations, modes and elastic displacements change the slip [N·mm; per mm of width in 2D].
+
+    By the trapezoidal rule: the mean of the tangential forces of both positions, at the nodes of the present contact,
+    times this slip. found: the equilibrium, in which the pinion's trace is e_1 + F. before, history: the friction
+    history, interpolated to the contact and as it was.
+    """
+    geometry, operator = contact.geometry, contact.operator
+    flux = np.einsum("jia,ja->ji", operator.frames, operator.flux(found.traction))
+    slip = (found.jump + flux)[:, 1:] + _beyond_nominal(geometry, before)
+    return 0.5 * float(np.sum((found.force[:, 1:] + previous_friction(geometry, history)) * slip))
+
+
+def _beyond_nominal(geometry: ContactGeometry, before: PreviousJump) -> Floats:
+    """(n, d−1) change of the free rotations up to the search, and minus the elastic jump of then [mm]."""
+    turned = [geometry.stand.extra[gear] - before.stand.extra[gear] for gear in Member]
+    return sum(spin[:, 1:] * angle for spin, angle in zip(geometry.spins, turned)) - before.jump[:, 1:]
 
 
 def slip_direction(geometry: ContactGeometry) -> Floats:

@@ -21,7 +21,7 @@ from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.arrays import Floats
-from tests.support.gear_cases import spur_scene
+from tests.support.gear_cases import helical_scene, spur_scene
 from tests.support.running.transient_pairs import moving, started
 
 RPM, POSITIONS = 30.0, 6000
@@ -111,6 +111,23 @@ def test_friction_acts_from_the_first_step() -> None:
     (moment,) = first(case, start, 1)
     assert moment.mesh_force > 0.0
     assert moment.result.friction_loss > 0.0
+
+
+def test_friction_of_a_fast_start() -> None:
+    """Problem: a helical pair at 300 r/min, μ = 0.2, its first blow, in which the wheel turns back and forth as fast as
+    it turns nominally, and slip with it. Exact: all energy has an account; 3 % of what friction takes is left over in
+    twenty time steps, and 2 % of what the load passes on in any of them. The nominal sliding has less than half of this
+    friction, and the balance would be missed."""
+    slow = moving("helical", 0.2, 300.0, count=0)
+    case = replace(slow, contacts=KeptContacts(slow.pair, 300, slow.contacts.components))
+    start = start_from_rest(case.pair, gear_problem(helical_scene()), case.speed, 0.2)
+    found = first(case, start, 20)[1:]
+    assert max(moment.mesh_force for moment in found) > 1.5 * case.pair.drive.torque / case.pair.lever
+    friction = sum(moment.energies.friction for moment in found)
+    nominal = sum(moment.result.friction_loss for moment in found) * case.contacts.step_angle
+    assert friction > 2.0 * nominal
+    assert sum(abs(moment.energies.left) for moment in found) < 0.03 * friction
+    assert max(moment.residuals.exchange for moment in found) < 0.02
 
 
 def test_motion_ends_as_from_statics() -> None:

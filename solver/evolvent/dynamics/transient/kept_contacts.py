@@ -31,6 +31,38 @@ results do not depend on what was solved before."""
 ROUNDS = 8
 
 
+Key = tuple[float, int, float]
+"""Position, among the closest ones that share it, multiple and half-width of the window."""
+
+
+@dataclass
+class ContactStore:
+    """Contacts that have been searched and solved, as far as there is room."""
+
+    most: float = np.inf
+    """Memory that may be kept [bytes]. The first ones are kept: as each mesh period needs all of them in turn, dropping
+    the oldest would keep none that is needed next."""
+    kept: dict[Key, SearchedContact] = field(default_factory=dict, repr=False)
+    """What had room."""
+    _latest: dict[Key, SearchedContact] = field(default_factory=dict, repr=False)
+    """The last one, if it had no room: a time step may ask for it twice."""
+
+    def find(self, key: Key) -> SearchedContact | None:
+        """None where it has to be searched."""
+        return self.kept.get(key) or self._latest.get(key)
+
+    def keep(self, key: Key, at: SearchedContact) -> None:
+        """Where there is room for what it is once it is solved: with its compliance, unless all solutions flew."""
+        self._latest.clear()
+        own = at.bytes if key in self.kept else at.bytes_now
+        kept = sum(each.bytes for other, each in self.kept.items() if other != key)
+        if kept + own <= self.most:
+            self.kept[key] = at
+        else:
+            self.kept.pop(key, None)
+            self._latest[key] = at
+
+
 @dataclass(frozen=True)
 class KeptContacts:
     """Of one pair, for any number of transients with the same number of components."""
@@ -41,11 +73,8 @@ class KeptContacts:
     """Of a mesh period, n. Position 3.5 is midway between 3 and 4, n is 0 a pitch later."""
     components: int
     """k: 1 without friction, else the dimension of space."""
-    most: float = np.inf
-    """Memory that may be kept [bytes]; what has no room is searched again each time. The first ones are kept: as each
-    period needs all of them in turn, dropping the oldest would keep none that is needed next."""
-    kept: dict[tuple[float, int, float], SearchedContact] = field(default_factory=dict, repr=False)
-    """By position, among the closest ones that share it, multiple and half-width of the window."""
+    store: ContactStore = field(default_factory=ContactStore, repr=False)
+    """Where they are kept."""
     apart: int = 1
     """From one position to the next, among these."""
 
@@ -69,8 +98,10 @@ class KeptContacts:
         """
         multiple, half_width = round(predicted / self._spacing), WIDER * self.pair.model.half_width
         for _ in range(ROUNDS):
-            at = self._at(phase, multiple, half_width)
+            key = self.apart * phase, multiple, half_width
+            at = self.store.find(key) or self._searched(phase, multiple, half_width)
             found = solve(at)
+            self.store.keep(key, at)
             shift = float(found.motion[0]) / self._spacing
             if at.contact.geometry.reaches_rim(found.traction[:, 0] > 0.0):
                 half_width *= RIM
@@ -86,20 +117,8 @@ class KeptContacts:
             f"after {ROUNDS} searches; take more positions"
         )
 
-    def _at(self, phase: float, multiple: int, half_width: float) -> SearchedContact:
-        """Kept, or searched, and then kept where there is room. It is taken to be as large as the largest of those that
-        are kept, which have been solved: what a solution derives is counted there."""
-        key = self.apart * phase, multiple, half_width
-        if key in self.kept:
-            return self.kept[key]
-        searched = self._searched(phase * self.step_angle, multiple * self._spacing, half_width)
-        sizes = [each.bytes for each in self.kept.values()]
-        if sum(sizes) + max(sizes or [searched.bytes]) <= self.most:
-            self.kept[key] = searched
-        return searched
-
-    def _searched(self, angle: float, ψ: float, half_width: float) -> SearchedContact:
-        model = self.pair.model
+    def _searched(self, phase: float, multiple: int, half_width: float) -> SearchedContact:
+        model, angle, ψ = self.pair.model, phase * self.step_angle, multiple * self._spacing
         stand = Stand(model.pair, angle, self.pair.drive.rotations(ψ))
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.geometry.teeth:

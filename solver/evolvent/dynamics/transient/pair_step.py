@@ -36,8 +36,6 @@ class SearchedContact:
     """Where the flanks face each other."""
     searched: float
     """ψ_s [rad]."""
-    compliance: JumpCompliance
-    """A (n·k, n·k) [mm/N]."""
     modes: Floats
     """Φ (n·k, m)."""
     turned: Floats
@@ -48,11 +46,34 @@ class SearchedContact:
     """Tooth pairs that may touch."""
 
     @cached_property
-    def bytes(self) -> int:
-        """Memory of its matrices, of what the search has found, and of what solutions have derived from it when this is
-        first asked for; without the gears."""
+    def compliance(self) -> JumpCompliance:
+        """A (n·k, n·k) [mm/N], put together where flanks touch first: in flight nothing needs it."""
+        return self.contact.geometry.compliance(self.k)
+
+    @property
+    def is_condensed(self) -> bool:
+        """Whether the compliance has been put together."""
+        return "compliance" in vars(self)
+
+    @property
+    def bytes_now(self) -> int:
+        """Memory of its matrices, of what the search has found, and of what solutions have derived from it so far;
+        without the gears."""
         others = [value for name, value in vars(self).items() if name != "compliance"]
-        return self.compliance.nbytes + array_bytes(others, GearBody)
+        return array_bytes(others, GearBody) + (self.compliance.nbytes if self.is_condensed else 0)
+
+    @property
+    def bytes(self) -> int:
+        """The same when this was first asked for, with its compliance if it has been put together by now."""
+        return self._condensed_bytes if self.is_condensed else self._flying_bytes
+
+    @cached_property
+    def _flying_bytes(self) -> int:
+        return self.bytes_now
+
+    @cached_property
+    def _condensed_bytes(self) -> int:
+        return self.bytes_now
 
     @cached_property
     def _unsearched(self) -> tuple[UnsearchedOverlap, ...]:
@@ -67,12 +88,10 @@ class SearchedContact:
 
     @staticmethod
     def of(pair: MovingPair, contact: GearContact, searched: float, k: int) -> SearchedContact:
-        """Puts compliance and modes together."""
+        """Puts the modes together."""
         geometry = contact.geometry
         turned = sum(share * spin[:, :k] for share, spin in zip(pair.drive.shares, geometry.spins))
-        compliance = geometry.compliance(k)
-        return SearchedContact(contact, searched, compliance, pair.mode_jumps(geometry, k), np.ravel(turned), k,
-                               pair.model.teeth)  # fmt: skip
+        return SearchedContact(contact, searched, pair.mode_jumps(geometry, k), np.ravel(turned), k, pair.model.teeth)
 
 
 @dataclass(frozen=True)
@@ -86,19 +105,28 @@ class PairStep:
 
     def system(self, at: SearchedContact) -> CondensedSystem:
         """The contact system at its end, on δ = ψ − ψ_s."""
-        m, D, b = self.pair.count, self.step.matrix, self.step.known
-        push, slow = D[:m, m] / self._modal, 1.0 / self.pair.frequencies**2 - 1.0 / self._modal
-        resistance = D[m, m] - D[m, :m] @ push
-        load = self.pair.drive.torque + b[m] - push @ b[:m] - resistance * at.searched
+        slow = 1.0 / self.pair.frequencies**2 - 1.0 / self._modal
         return CondensedSystem(
             operator=at.contact.operator,
             compliance=with_modes(at.compliance, at.modes, -slow),
-            motion=(at.turned - at.modes @ push)[:, None],
-            jump=at.modes @ (b[:m] / self._modal - push * at.searched),
-            load=np.array([load]),
-            resistance=np.array([[resistance]]),
+            motion=self._turned(at)[:, None],
+            jump=self._jump(at),
+            load=np.array([self._load(at)]),
+            resistance=np.array([[self._resistance]]),
             lever=np.array([self.pair.lever]),
         )
+
+    def in_flight(self, at: SearchedContact) -> Equilibrium | None:
+        """The solution of this system where no point overlaps without contact forces: there are none then. None where
+        some do, or where nothing but contact holds the rotation."""
+        if self._resistance <= 0.0:
+            return None
+        δ, operator = self._load(at) / self._resistance, at.contact.operator
+        jump = (self._jump(at) + self._turned(at) * δ).reshape(-1, at.k)
+        if (operator.trial(jump)[:, 0] > 0.0).any():
+            return None
+        nothing = np.zeros((len(operator.weights), at.k))
+        return Equilibrium(np.zeros_like(jump), nothing, np.array([δ]), jump, 0, 0.0)
 
     def state(self, at: SearchedContact, found: Equilibrium) -> MotionState:
         """The state at its end."""
@@ -107,6 +135,30 @@ class PairStep:
         pushed = at.modes.T @ with_components(found.force, at.k).ravel()
         q = (b[:m] - D[:m, m] * ψ - pushed) / self._modal
         return self.step.after(np.append(q, ψ))
+
+    def _turned(self, at: SearchedContact) -> Floats:
+        """H' (n·k,)."""
+        return at.turned - at.modes @ self._push
+
+    def _jump(self, at: SearchedContact) -> Floats:
+        """The part of J that is known (n·k,)."""
+        return at.modes @ (self.step.known[: self.pair.count] / self._modal - self._push * at.searched)
+
+    def _load(self, at: SearchedContact) -> float:
+        """The right side of the balance of δ."""
+        m, b = self.pair.count, self.step.known
+        return float(self.pair.drive.torque + b[m] - self._push @ b[:m] - self._resistance * at.searched)
+
+    @cached_property
+    def _resistance(self) -> float:
+        """D'."""
+        m, D = self.pair.count, self.step.matrix
+        return float(D[m, m] - D[m, :m] @ self._push)
+
+    @cached_property
+    def _push(self) -> Floats:
+        """D_q⁻¹ D_qψ (m,)."""
+        return self.step.matrix[: self.pair.count, self.pair.count] / self._modal
 
     @cached_property
     def _modal(self) -> Floats:

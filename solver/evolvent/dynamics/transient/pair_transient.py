@@ -179,6 +179,8 @@ class PairTransient:
     ) -> Equilibrium:
         """Of the contact at the end of a step in which the pinion turns by `span` [rad]. patch: of the last contact;
         before: friction history at this one. Raises NotConverged."""
+        if (flying := step.in_flight(at)) is not None:
+            return flying
         system, geometry = step.system(at), at.contact.geometry
         start = None if patch is None else patch.at(geometry)
         smooth = frictionless(normal_part(system), start if start is not None and start.any() else None)

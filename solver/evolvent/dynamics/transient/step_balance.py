@@ -235,6 +235,8 @@ class StepBalance:
 
 def stored_energy(pair: MovingPair, at: SearchedContact, found: Equilibrium) -> float:
     """½ fᵀC_r f of both gears beyond their modes, and ∫ (λ²/γ + τ²/γ_t)/2 of the contact [N·mm; N in 2D]."""
+    if not found.force.any():
+        return 0.0
     f, operator = with_components(found.force, at.k).ravel(), at.contact.operator
     modal = at.modes.T @ f / pair.frequencies
     rest = 0.5 * float(f @ at.compliance.times(f)) - 0.5 * float(modal @ modal)

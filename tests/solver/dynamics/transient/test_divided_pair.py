@@ -11,7 +11,7 @@ import pytest
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.transient.certificates import Unbalanced
-from evolvent.dynamics.transient.kept_contacts import KeptContacts
+from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.pair_state import SolvedStep
 from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransient
 from evolvent.dynamics.transient.steady_state import until_steady
@@ -27,7 +27,7 @@ def lightly_damped(friction: float = 0.0) -> PairTransient:
     """Above its natural speed, so that its teeth part and meet within four mesh periods."""
     fast = moving("spur", friction, 4800.0, free=True)
     pair = replace(fast.pair, mesh_damping=0.05 * fast.pair.mesh_damping)
-    return replace(fast, pair=pair, contacts=replace(fast.contacts, pair=pair, kept={}))
+    return replace(fast, pair=pair, contacts=replace(fast.contacts, pair=pair, store=ContactStore()))
 
 
 def run(positions: int, division: DividedSteps) -> list[MovingMoment]:
@@ -124,11 +124,11 @@ def test_what_lies_between_is_kept() -> None:
     no room for any it is the same to the last digit."""
     fast = replace(moving("spur", 0.2, 2000.0, free=True), division=DividedSteps(4e-3, 6))
     wanted = moments(fast, 2)
-    searched = dict(fast.contacts.kept)
+    searched = dict(fast.contacts.store.kept)
     assert any(phase % 1.0 for phase, *_ in searched)
     assert [moment.mesh_force for moment in moments(fast, 2)] == [moment.mesh_force for moment in wanted]
-    assert fast.contacts.kept.keys() == searched.keys()
-    bare = replace(fast, contacts=KeptContacts(fast.pair, POSITIONS, fast.contacts.components, 0.0))
+    assert fast.contacts.store.kept.keys() == searched.keys()
+    bare = replace(fast, contacts=KeptContacts(fast.pair, POSITIONS, fast.contacts.components, ContactStore(0.0)))
     assert [moment.mesh_force for moment in moments(bare, 1)] == [moment.mesh_force for moment in wanted[:POSITIONS]]
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import ModeChoice, gear_modes
 from evolvent.dynamics.transient import kept_contacts
-from evolvent.dynamics.transient.kept_contacts import KeptContacts
+from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_step import SearchedContact
 from evolvent.dynamics.transient.pair_transient import MovingMoment, PairState, PairTransient
@@ -36,7 +38,7 @@ def test_narrow_windows_are_widened(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(kept_contacts, "WIDER", 0.2)
     narrow = KeptContacts(fast.pair, POSITIONS, fast.contacts.components)
     assert largest_pressures(replace(fast, contacts=narrow)) == pytest.approx(wanted, rel=0.01)
-    widths = [at.contact.geometry.half_width for at in narrow.kept.values()]
+    widths = [at.contact.geometry.half_width for at in narrow.store.kept.values()]
     assert min(widths) == 0.2 * fast.pair.model.half_width < max(widths) < np.inf
     monkeypatch.setattr(ContactGeometry, "reaches_rim", lambda *_: False)
     cut = replace(fast, contacts=KeptContacts(fast.pair, POSITIONS, fast.contacts.components))
@@ -46,6 +48,27 @@ def test_narrow_windows_are_widened(monkeypatch: pytest.MonkeyPatch) -> None:
 def largest_pressures(transient: PairTransient) -> Floats:
     """Of a mesh period's positions [MPa]."""
     return np.array([moment.result.pressure.max() for moment in moments(transient, 1)])
+
+
+def of_size(size: int) -> SearchedContact:
+    """Stands for a contact that takes so many bytes."""
+    return cast(SearchedContact, SimpleNamespace(bytes=size, bytes_now=size))
+
+
+def test_store_keeps_what_there_is_room_for() -> None:
+    """100 bytes: the first one of 60 is kept, the second one found only until another is solved. The first one is
+    dropped when it has come to take more, as one does that flew before."""
+    store, one, other = ContactStore(100.0), (0.0, 1, 2.0), (1.0, 1, 2.0)
+    store.keep(one, of_size(60))
+    store.keep(other, of_size(60))
+    assert list(store.kept) == [one]
+    assert store.find(other) is not None
+    store.keep(one, of_size(120))
+    assert not store.kept
+    assert store.find(other) is None
+    found = store.find(one)
+    assert found is not None
+    assert found.bytes == 120
 
 
 def deep_pair() -> GearModel:

@@ -67,6 +67,6 @@ def test_a_step_with_friction_is_in_balance() -> None:
     fast = moving(FRICTION, 3000.0)
     moment = first(fast)
     assert moment.residuals.momentum < 1e-8 and moment.residuals.reaction < 1e-8
-    assert all(isinstance(at.compliance, AppliedCompliance) for at in fast.contacts.kept.values())
+    assert all(isinstance(at.compliance, AppliedCompliance) for at in fast.contacts.store.kept.values())
     assert len(moment.state.vibration) == 17 + 60
     assert np.abs(moment.state.vibration).max() > 1e-5 * np.abs(moment.state.motion.position).max()

@@ -12,7 +12,7 @@ import pytest
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme
 from evolvent.dynamics.transient import pair_transient
 from evolvent.dynamics.transient.certificates import EXACT, LIMITS, Unbalanced, certify_motion, certify_step
-from evolvent.dynamics.transient.kept_contacts import KeptContacts
+from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
@@ -86,7 +86,7 @@ def test_friction_through_separation() -> None:
     the balances hold there, too."""
     fast = moving("spur", 0.2, 4200.0, count=2, free=True)
     pair = replace(fast.pair, mesh_damping=0.05 * fast.pair.mesh_damping)
-    fast = replace(fast, pair=pair, contacts=replace(fast.contacts, pair=pair, kept={}))
+    fast = replace(fast, pair=pair, contacts=replace(fast.contacts, pair=pair, store=ContactStore()))
     found = moments(fast, 12)
     apart = [len(moment.result.contact.tooth) == 0 for moment in found]
     assert any(apart)

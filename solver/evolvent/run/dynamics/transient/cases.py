@@ -13,7 +13,7 @@ from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.dynamics.transient.back_flanks import require_backlash
 from evolvent.dynamics.transient.certificates import certify_motion
 from evolvent.dynamics.transient.driven_pair import LEAST, driven_pair, loaded_as_static, resolved_modes
-from evolvent.dynamics.transient.kept_contacts import KeptContacts
+from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_transient import PairState, PairTransient
 from evolvent.dynamics.transient.starts.quasi_static_start import quasi_static_starts
@@ -137,7 +137,7 @@ class PairCases:
         """The positions of a mesh period, for all cases of a rank. steps: between two positions of the scene."""
         components = self.pair.model.bodies[0].d if any(self.scene.contact.friction) else 1
         most = KEPT * 1e6 * machine_megabytes() / self.comm.size
-        return KeptContacts(self.pair, steps * self.scene.sweep.positions, components, most)
+        return KeptContacts(self.pair, steps * self.scene.sweep.positions, components, ContactStore(most))
 
     def _shared(
         self, kept: KeptCases, contacts: KeptContacts, solved: Callable[[int, PairTransient, PairState], Motion],

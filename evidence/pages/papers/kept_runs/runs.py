@@ -26,7 +26,8 @@ class Runs:
 
     def ended(self, name: str, leaves: str, *words: object) -> tuple[Path, Cost]:
         """The folder of a run and what it took. words: of the command. leaves: its last file. Raises RunFailed, also
-        where the run that has ended there had other words."""
+        where the run that has ended there had other words. Whether program and scene have changed since is not looked
+        at: take another folder then."""
         folder, cost = self.out / name, self.out / f"{name}.cost.csv"
         if (folder / leaves).exists() and cost.exists():
             self._require_same(name, words)
@@ -34,7 +35,7 @@ class Runs:
             self.out.mkdir(parents=True, exist_ok=True)
             took = run(Command((*map(str, words), "--out", str(folder)), ROOT, self.out / f"{name}.log",
                                time_limit=TIME_LIMIT))  # fmt: skip
-            self._words(name).write_text(_without_checkout(words), encoding="utf-8")
+            self._words(name).write_text(self._told(words), encoding="utf-8")
             cost.write_text(f"{took.wall},{took.cpu},{took.memory_MB}", encoding="utf-8")
         return folder, Cost(*map(float, cost.read_text(encoding="utf-8").split(",")))
 
@@ -43,7 +44,7 @@ class Runs:
 
     def _require_same(self, name: str, words: Sequence[object]) -> None:
         """Raises RunFailed unless the run of this name had these words."""
-        path, wanted = self._words(name), _without_checkout(words)
+        path, wanted = self._words(name), self._told(words)
         found = path.read_text(encoding="utf-8") if path.exists() else "of an unknown command"
         if found != wanted:
             raise RunFailed(
@@ -51,10 +52,10 @@ class Runs:
                 "take another --out, or remove it"
             )
 
-
-def _without_checkout(words: Sequence[object]) -> str:
-    """The words of a command behind its program, one a line: the same wherever the checkout lies."""
-    return "\n".join(str(word).replace(str(ROOT), ".") for word in words[1:])
+    def _told(self, words: Sequence[object]) -> str:
+        """The words of a command behind its program, one a line: the same wherever the checkout and the runs lie."""
+        told = (str(word).replace(str(self.out), "OUT").replace(str(ROOT), ".") for word in words[1:])
+        return "\n".join(told)
 
 
 def read(path: Path) -> list[Row]:

@@ -44,22 +44,23 @@ class ContactStore:
     the oldest would keep none that is needed next."""
     kept: dict[Key, SearchedContact] = field(default_factory=dict, repr=False)
     """What had room."""
+    _sizes: dict[Key, int] = field(default_factory=dict, repr=False)
+    """Of what is kept [bytes]."""
     _latest: dict[Key, SearchedContact] = field(default_factory=dict, repr=False)
-    """The last one, if it had no room: a time step may ask for it twice."""
+    """The last one, if it had no room: a time step may ask for it twice. It comes on top of what may be kept."""
 
     def find(self, key: Key) -> SearchedContact | None:
         """None where it has to be searched."""
         return self.kept.get(key) or self._latest.get(key)
 
     def keep(self, key: Key, at: SearchedContact) -> None:
-        """Where there is room for what it is once it is solved: with its compliance, unless all solutions flew."""
+        """Where there is room for what it is once it is solved: with its compliance, unless all solutions flew. What
+        results derive from it afterwards, a few per cent, is counted when it is solved again."""
         self._latest.clear()
-        own = at.bytes if key in self.kept else at.bytes_now
-        kept = sum(each.bytes for other, each in self.kept.items() if other != key)
-        if kept + own <= self.most:
-            self.kept[key] = at
-        else:
-            self.kept.pop(key, None)
+        self._sizes[key] = at.counted_bytes if key in self.kept else at.bytes_now
+        self.kept[key] = at
+        if sum(self._sizes.values()) > self.most:
+            del self.kept[key], self._sizes[key]
             self._latest[key] = at
 
 
@@ -100,8 +101,10 @@ class KeptContacts:
         for _ in range(ROUNDS):
             key = self.apart * phase, multiple, half_width
             at = self.store.find(key) or self._searched(phase, multiple, half_width)
-            found = solve(at)
-            self.store.keep(key, at)
+            try:
+                found = solve(at)
+            finally:  # a step that is not solved is taken again in half, and in other periods
+                self.store.keep(key, at)
             shift = float(found.motion[0]) / self._spacing
             if at.contact.geometry.reaches_rim(found.traction[:, 0] > 0.0):
                 half_width *= RIM

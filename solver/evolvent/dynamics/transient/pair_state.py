@@ -81,15 +81,15 @@ class SolvedStep:
     """At its end."""
     stored: float
     """Energy of rest and contact there."""
-    previous: PreviousJump | None
-    """Friction history at this contact, None without friction."""
+    jump_before: PreviousJump | None
+    """Friction history interpolated to this contact, None without friction."""
 
     @property
-    def slipped(self) -> float:
+    def slip_work(self) -> float:
         """Work of friction beyond that in the nominal sliding [N·mm; N in 2D]."""
-        if self.previous is None or self.begin.history is None:
+        if self.jump_before is None or self.begin.history is None:
             return 0.0
-        return work_beyond_nominal(self.at.contact, self.found, self.previous, self.begin.history)
+        return work_beyond_nominal(self.at.contact, self.found, self.jump_before, self.begin.history)
 
     @property
     def touches(self) -> bool:

@@ -63,7 +63,7 @@ class SearchedContact:
         return array_bytes(others, GearBody) + (self.compliance.nbytes if self.is_condensed else 0)
 
     @property
-    def bytes(self) -> int:
+    def counted_bytes(self) -> int:
         """The same when this was first asked for, with its compliance if it has been put together by now."""
         return self._condensed_bytes if self.is_condensed else self._flying_bytes
 
@@ -116,17 +116,17 @@ class PairStep:
             lever=np.array([self.pair.lever]),
         )
 
-    def in_flight(self, at: SearchedContact) -> Equilibrium | None:
-        """The solution of this system where no point overlaps without contact forces: there are none then. None where
-        some do, or where nothing but contact holds the rotation."""
+    def in_flight(self, at: SearchedContact, k: int) -> Equilibrium | None:
+        """The solution of this system, of k components, where no point overlaps without contact forces: there are none
+        then. None where some do, or where nothing but contact holds the rotation."""
         if self._resistance <= 0.0:
             return None
         δ, operator = self._load(at) / self._resistance, at.contact.operator
         jump = (self._jump(at) + self._turned(at) * δ).reshape(-1, at.k)
         if (operator.trial(jump)[:, 0] > 0.0).any():
             return None
-        nothing = np.zeros((len(operator.weights), at.k))
-        return Equilibrium(np.zeros_like(jump), nothing, np.array([δ]), jump, 0, 0.0)
+        force, traction = np.zeros((len(jump), k)), np.zeros((len(operator.weights), k))
+        return Equilibrium(force, traction, np.array([δ]), jump[:, :k], 0, 0.0)
 
     def state(self, at: SearchedContact, found: Equilibrium) -> MotionState:
         """The state at its end."""

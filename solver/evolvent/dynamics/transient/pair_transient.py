@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, reduce
+from functools import lru_cache, reduce
 
 import numpy as np
 
@@ -151,16 +151,19 @@ class PairTransient:
         begin, length = state.for_step(self.pair, self.scheme, way * self.time_step), way * self.time_step
         predicted = float(begin.motion.position[-1] + length * begin.motion.velocity[-1])
         span, phase = way * self.contacts.step_angle, self._phase(n, reached + way)
-        previous = cache(lambda at: begin.previous_jump(self.pair, at.contact.geometry))
+        jump_before = lru_cache(1)(lambda at: begin.previous_jump(self.pair, at.contact.geometry))
 
         def ended(touching: bool) -> SolvedStep:
             system = self.pair.system if touching else self.pair.system_apart
             step = PairStep(self.pair, TimeStep(system, self.scheme, begin.motion, length))
-            at, found = self.contacts.solved(
-                phase, predicted, lambda at: self._equilibrium(step, at, begin.patch, previous(at), span)
-            )
+
+            def solve(at: SearchedContact) -> Equilibrium:
+                flying = step.in_flight(at, 1 if begin.history is None else at.k)
+                return flying or self._equilibrium(step, at, begin.patch, jump_before(at), span)
+
+            at, found = self.contacts.solved(phase, predicted, solve)
             stored = stored_energy(self.pair, at, found)
-            return SolvedStep(step, begin, halvings, at, found, step.state(at, found), stored, previous(at))
+            return SolvedStep(step, begin, halvings, at, found, step.state(at, found), stored, jump_before(at))
 
         return self._damped_in_contact(begin.mesh_force != 0.0, ended)
 
@@ -179,8 +182,6 @@ class PairTransient:
     ) -> Equilibrium:
         """Of the contact at the end of a step in which the pinion turns by `span` [rad]. patch: of the last contact;
         before: friction history at this one. Raises NotConverged."""
-        if (flying := step.in_flight(at)) is not None:
-            return flying
         system, geometry = step.system(at), at.contact.geometry
         start = None if patch is None else patch.at(geometry)
         smooth = frictionless(normal_part(system), start if start is not None and start.any() else None)
@@ -197,7 +198,7 @@ class PairTransient:
             position_result(pair.model, at.contact, found, self.friction, NO_STIFFNESS, 0), stand=stand
         )
         sums, span = NodalSums.of(pair, at.contact.stand, result), part(solved.halvings) * self.contacts.step_angle
-        balance = StepBalance(solved.step, span, motion, result, sums, solved.stored, solved.slipped)
+        balance = StepBalance(solved.step, span, motion, result, sums, solved.stored, solved.slip_work)
         turned = at.turned.reshape(found.force.shape[0], at.k)[:, : found.force.shape[1]]
         force, length = float(np.sum(turned * found.force)) / pair.lever, solved.step.step.length
         state = PairState(

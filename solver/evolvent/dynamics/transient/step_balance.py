@@ -148,7 +148,7 @@ class StepBalance:
     """Of its contact forces."""
     stored: float
     """Energy of rest and contact, see `stored_energy`."""
-    slipped: float
+    slip_work: float
     """Work of friction beyond that in the nominal sliding, see `work_beyond_nominal`."""
 
     @cached_property
@@ -172,7 +172,7 @@ class StepBalance:
         given = float(mean @ moved) - drive.torque * float(moved[-1])
         rotation, friction = (0.5 * self.span * (one + other) for one, other in zip(before.powers, end.powers))
         return StepEnergies(
-            passed, rotation, given, friction + self.slipped, end.stored - before.stored, float(damping @ moved),
+            passed, rotation, given, friction + self.slip_work, end.stored - before.stored, float(damping @ moved),
             self._energy.taken(before.acceleration, self.state) - before.converted,
         )  # fmt: skip
 

@@ -92,14 +92,14 @@ def previous_jumps(
 
 
 def previous_friction(geometry: ContactGeometry, history: FrictionHistory) -> Floats:
-    """(n, d−1) tangential contact forces of then on the nodes of the present contact, in the local frames of now
-    [N; per mm of width in 2D]. Those on nodes that the present contact does not have are left out."""
-    rows, teeth = geometry.rows(Member.PINION)
+    """(n, d−1) contact forces of then on the nodes of the present contact [N; per mm of width in 2D], in the tangent
+    planes of now: where the normals have turned, some of the normal forces, too. Forces on nodes that the present
+    contact does not have are left out."""
+    rows = geometry.rows(Member.PINION)[0]
     forces = np.zeros((len(rows), geometry.d))
     then, now = _shared_rows(history, rows)
     forces[now] = history.forces[Member.PINION][then]
-    R = geometry.stand.rotation(Member.PINION, geometry.d)
-    turned = np.concatenate([forces[each] @ R.T for each in teeth])
+    turned = forces @ geometry.stand.rotation(Member.PINION, geometry.d).T
     local: Floats = -np.einsum("jia,ja->ji", geometry.operator.frames, turned)  # −f acts on the pinion
     return local[:, 1:]
 
@@ -131,7 +131,7 @@ def _jump(geometry: ContactGeometry, before: Stand, u1: Floats, u2: Floats) -> F
 def _displacements(geometry: ContactGeometry, histories: Sequence[FrictionHistory], gear: Member) -> Floats:
     """Displacements (histories, m, d) [mm] at the previous position of the rows of the present contact."""
     before, rows = histories[0].rows, geometry.rows(gear)[0]
-    if not len(before[gear]):  # nothing touched
+    if not any(history.forces[gear].any() for history in histories):  # nothing touched
         return np.zeros((len(histories), len(rows), geometry.d))
     forces = np.stack([history.forces[gear] for history in histories])
     u = geometry.bodies[gear].chain.apply(before[gear], forces, rows)

@@ -52,7 +52,7 @@ def largest_pressures(transient: PairTransient) -> Floats:
 
 def of_size(size: int) -> SearchedContact:
     """Stands for a contact that takes so many bytes."""
-    return cast(SearchedContact, SimpleNamespace(bytes=size, bytes_now=size))
+    return cast(SearchedContact, SimpleNamespace(counted_bytes=size, bytes_now=size))
 
 
 def test_store_keeps_what_there_is_room_for() -> None:
@@ -68,7 +68,7 @@ def test_store_keeps_what_there_is_room_for() -> None:
     assert store.find(other) is None
     found = store.find(one)
     assert found is not None
-    assert found.bytes == 120
+    assert found.bytes_now == 120
 
 
 def deep_pair() -> GearModel:

@@ -60,8 +60,8 @@ def test_balances_of_a_steady_motion() -> None:
 
 def test_losses_of_a_steady_motion() -> None:
     """Over a mesh period the contact gives the motion what damping and time scheme take out, as none is left over, both
-    above zero; friction is that of the positions in the nominal sliding, a sum over tractions and sliding, but for the
-    0.03 % that the flanks slip beyond it."""
+    above zero; friction is that of the positions in the nominal sliding, a sum over tractions and sliding, and 0.03 %
+    in the slip beyond it."""
     found = steady()
     energies, step = found.energies, 2.0 * np.pi / 50.0 / POSITIONS
     assert found.is_steady
@@ -69,7 +69,7 @@ def test_losses_of_a_steady_motion() -> None:
     assert energies.numerical > 0.0
     assert energies.given == pytest.approx(energies.damping + energies.numerical, rel=1e-2)
     friction = sum(moment.result.friction_loss * step for moment in found.moments)
-    assert energies.friction == pytest.approx(friction, rel=1e-3)
+    assert 2e-4 < energies.friction / friction - 1.0 < 5e-4
     assert 0.01 < energies.friction / energies.passed < 0.05
 
 
@@ -98,8 +98,8 @@ def test_friction_through_separation() -> None:
 @pytest.mark.parametrize("kind", ["spur", "helical"])
 def test_energy_that_creeping_contact_gives_back(kind: str) -> None:
     """Problem: time steps 2000 times as short as those of the other tests. Points that stuck slip back by and by.
-    Exact: the energy that flanks and motion give back goes to friction, ten to a hundred times as much of it as in the
-    nominal sliding. Less than 7 % of it is left over; by the nominal sliding it would be more than nine tenths."""
+    Exact: the energy that flanks and motion give back goes to friction, more than eight times what the nominal sliding
+    has. Less than 7 % of it is left over; by the nominal sliding it would be more than nine tenths."""
     slow = moving(kind, 0.5, 30.0)
     slow = replace(slow, contacts=KeptContacts(slow.pair, 20000, slow.contacts.components))
     for moment in [moment for _, moment in zip(range(6), slow.run(started(slow), 1))][1:]:

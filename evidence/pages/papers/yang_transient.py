@@ -1,8 +1,8 @@
 """`python -m evidence.pages.papers.yang_transient --out DIR`: Yang's pair at both speeds, for docs/yang2022.md.
 
 At 1500 and 3000 r/min and the paper's friction coefficients, as the paper drives the pair, the pinion at constant speed
-and a torque on the wheel; and from rest (yang_start.py). Runs that an earlier call has ended are read again. `python -m
-evidence.pages` then writes the page.
+and a torque on the wheel; the lowest and the highest coefficient with error bars; and from rest (yang_start.py). Runs
+that an earlier call has ended are read again. `python -m evidence.pages` then writes the page.
 """
 
 from __future__ import annotations
@@ -38,20 +38,24 @@ SHOWN = "static_peak_to_peak_um", "peak_to_peak_um", "static_max_pressure_MPa", 
 """Of each case."""
 
 
-def command(*settings: str) -> list[object]:
+def command(*settings: str, error_bars: bool = False) -> list[object]:
     """`evolvent transient` of the scene on level quick."""
-    set_to = [f"--set={each}" for each in (*DRIVE, *settings, "output.animation=false", "output.error_bars=false")]
+    output = "output.animation=false", f"output.error_bars={str(error_bars).lower()}"
+    set_to = [f"--set={each}" for each in (*DRIVE, *settings, *output)]
     return [*module_run("evolvent", "transient", DEMOS / "yang2022.toml", "--level", "quick", "--overwrite",
                         "--quiet", *set_to)]  # fmt: skip
 
 
 def figures(runs: Runs) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
-    words = command(f"transient.speeds_rpm={list(SPEEDS)}", f"contact.friction={list(FRICTIONS)}")
+    speeds = f"transient.speeds_rpm={list(SPEEDS)}"
+    words = command(speeds, f"contact.friction={list(FRICTIONS)}")
     folder, _ = runs.ended("all_coefficients", "transient.json", *words)
-    facts = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
-    yield from _of_cases(facts)
+    yield from _of_cases(_facts(folder))
     yield from _of_teeth(folder)
+    words = command(speeds, f"contact.friction={[LOW, HIGH]}", error_bars=True)
+    barred, _ = runs.ended("error_bars", "transient.json", *words)
+    yield from _of_bars(barred)
     copy(folder / "pictures/transient.png", DOCS / PICTURE)
     yield from yang_start.figures(runs, command)
 
@@ -73,6 +77,26 @@ def _of_cases(facts: list[dict[str, Any]]) -> Named:
         for fact in own:
             for name in SHOWN:
                 yield f"{speed}_{fact['friction']:g}_{name}", fact[name]
+
+
+def _facts(folder: Path) -> list[dict[str, Any]]:
+    """Of each case."""
+    found: list[dict[str, Any]] = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
+    return found
+
+
+def _of_bars(folder: Path) -> Named:
+    """Error bars of the lowest and the highest coefficient, and of a tooth's pressures the median and the largest away
+    from the tip-edge zones."""
+    for fact in _facts(folder):
+        for name in (*SHOWN, "dynamic_factor"):
+            yield f"{fact['speed_rpm']:.0f}_{fact['friction']:g}_{name}_error", fact[f"{name}_error"]
+    rows = read(folder / "transient_teeth.csv")
+    for speed in SPEEDS:
+        own = [row for row in rows if float(row["speed_rpm"]) == speed]
+        bars = np.array([float(row["max_pressure_MPa_error"]) / float(row["max_pressure_MPa"]) for row in own])
+        yield f"{speed}_tooth_bar_median_percent", 100.0 * float(np.nanmedian(bars))
+        yield f"{speed}_tooth_bar_most_percent", 100.0 * float(np.nanmax(bars))
 
 
 def _of_teeth(folder: Path) -> Named:
@@ -125,15 +149,21 @@ def table(docs: Path) -> str:
 
 
 def frictions_table(docs: Path) -> str:
-    """Transmission error and largest pressure at each friction coefficient, in statics and at both speeds."""
+    """Transmission error and largest pressure at each friction coefficient, in statics and at both speeds; with error
+    bars where they were computed."""
     f = kept.kept(docs / KEPT, COMMAND)
+
+    def shown(name: str, digits: int) -> str:
+        bar = f" ± {f[f'{name}_error']:.{digits}f}" if f"{name}_error" in f else ""
+        return f"{f[name]:.{digits}f}{bar}"
+
     first = SPEEDS[0]
     rows = [
         (
-            f"{μ:.2f}", f"{f[f'{first}_{μ:g}_static_peak_to_peak_um']:.3f}",
-            *(f"{f[f'{speed}_{μ:g}_peak_to_peak_um']:.3f}" for speed in SPEEDS),
-            f"{f[f'{first}_{μ:g}_static_max_pressure_MPa']:.0f}",
-            *(f"{f[f'{speed}_{μ:g}_max_pressure_MPa']:.0f}" for speed in SPEEDS),
+            f"{μ:.2f}", shown(f"{first}_{μ:g}_static_peak_to_peak_um", 3),
+            *(shown(f"{speed}_{μ:g}_peak_to_peak_um", 3) for speed in SPEEDS),
+            shown(f"{first}_{μ:g}_static_max_pressure_MPa", 0),
+            *(shown(f"{speed}_{μ:g}_max_pressure_MPa", 0) for speed in SPEEDS),
         )
         for μ in FRICTIONS
     ]  # fmt: skip

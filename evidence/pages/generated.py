@@ -30,7 +30,8 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "scene.md": {"levels": yang.levels(docs)},
         docs / "yang2022.md": {
             "accuracy": yang.accuracy(docs), "points": yang.points(docs), "transient": yang_transient.table(docs),
-            "frictions": yang_transient.frictions_table(docs), "start": yang_transient.start(docs),
+            "frictions": yang_transient.frictions_table(docs), "bars": yang_transient.bars_said(docs),
+            "start": yang_transient.start(docs),
         },
         docs / "he2022.md": {
             "points": he.points(docs), "sensitivity": he.sensitivity(docs), "speeds": he_transient.speeds_table(docs),

@@ -33,7 +33,7 @@ DRIVE = (
     "load.on=wheel", "load.torque_Nm=882.353", "transient.drive=constant_speed", f"sweep.positions={POSITIONS}",
 )  # fmt: skip
 """The torque on the wheel that 250 N·m on the pinion balance."""
-PICTURE = "yang2022/at_speed.png"
+PICTURE, WITH_BARS = "yang2022/at_speed.png", "yang2022/with_error_bars.png"
 SHOWN = "static_peak_to_peak_um", "peak_to_peak_um", "static_max_pressure_MPa", "max_pressure_MPa"
 """Of each case."""
 
@@ -56,6 +56,7 @@ def figures(runs: Runs) -> Named:
     words = command(speeds, f"contact.friction={[LOW, HIGH]}", error_bars=True)
     barred, _ = runs.ended("error_bars", "transient.json", *words)
     yield from _of_bars(barred)
+    copy(barred / "pictures/transient.png", DOCS / WITH_BARS)
     copy(folder / "pictures/transient.png", DOCS / PICTURE)
     yield from yang_start.figures(runs, command)
 

@@ -90,7 +90,7 @@ def _of_bars(folder: Path) -> Named:
     """Error bars of the lowest and the highest coefficient, and of a tooth's pressures the median and the largest away
     from the tip-edge zones."""
     for fact in _facts(folder):
-        for name in (*SHOWN, "dynamic_factor"):
+        for name in SHOWN:
             yield f"{fact['speed_rpm']:.0f}_{fact['friction']:g}_{name}_error", fact[f"{name}_error"]
     rows = read(folder / "transient_teeth.csv")
     for speed in SPEEDS:

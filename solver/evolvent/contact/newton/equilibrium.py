@@ -88,12 +88,19 @@ def frictionless(
 
 def _overlapping(system: CondensedSystem) -> Bools:
     """(q,) bool: the points that overlap without contact forces; all where contact alone holds the free motions."""
-    every = np.ones(len(system.operator.weights), dtype=bool)
-    if not system.resistance.any() or np.linalg.cond(system.resistance) > 1.0 / np.finfo(float).eps:
-        return every
-    force, motion = np.zeros((len(system.operator.nodes), system.k)), np.linalg.solve(system.resistance, system.load)
-    jump = system.jumps(force, motion)
-    return np.asarray(system.operator.trial(jump, None)[:, 0] > 0.0)
+    free = free_motion(system.motion, system.jump, system.load, system.resistance)
+    if free is None:
+        return np.ones(len(system.operator.weights), dtype=bool)
+    return np.asarray(system.operator.trial(free[1].reshape(-1, system.k))[:, 0] > 0.0)
+
+
+def free_motion(motion: Floats, jump: Floats, load: Floats, resistance: Floats) -> tuple[Floats, Floats] | None:
+    """Amplitudes δ (r,) of the free rigid motions and jumps (n·k,) [mm] without contact forces; None where contact
+    alone holds these motions. motion, jump, load, resistance: as of `CondensedSystem`."""
+    if not resistance.any() or np.linalg.cond(resistance) > 1.0 / np.finfo(float).eps:
+        return None
+    δ = np.linalg.solve(resistance, load)
+    return δ, jump + motion @ δ
 
 
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:

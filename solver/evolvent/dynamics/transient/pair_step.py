@@ -17,7 +17,7 @@ import numpy as np
 
 from evolvent.contact.newton.applied_compliance import with_modes
 from evolvent.contact.newton.contact_equations import CondensedSystem
-from evolvent.contact.newton.equilibrium import Equilibrium, with_components
+from evolvent.contact.newton.equilibrium import Equilibrium, free_motion, with_components
 from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeStep
 from evolvent.dynamics.transient.moving_pair import MovingPair
@@ -64,12 +64,8 @@ class SearchedContact:
 
     @property
     def counted_bytes(self) -> int:
-        """The same when this was first asked for, with its compliance if it has been put together by now."""
-        return self._condensed_bytes if self.is_condensed else self._flying_bytes
-
-    @cached_property
-    def _flying_bytes(self) -> int:
-        return self.bytes_now
+        """The same; with a compliance, what it was when this was first asked for."""
+        return self._condensed_bytes if self.is_condensed else self.bytes_now
 
     @cached_property
     def _condensed_bytes(self) -> int:
@@ -109,24 +105,24 @@ class PairStep:
         return CondensedSystem(
             operator=at.contact.operator,
             compliance=with_modes(at.compliance, at.modes, -slow),
-            motion=self._turned(at)[:, None],
+            motion=self._turned(at),
             jump=self._jump(at),
-            load=np.array([self._load(at)]),
-            resistance=np.array([[self._resistance]]),
+            load=self._load(at),
+            resistance=self._resistance,
             lever=np.array([self.pair.lever]),
         )
 
     def in_flight(self, at: SearchedContact, k: int) -> Equilibrium | None:
         """The solution of this system, of k components, where no point overlaps without contact forces: there are none
         then. None where some do, or where nothing but contact holds the rotation."""
-        if self._resistance <= 0.0:
+        free = free_motion(self._turned(at), self._jump(at), self._load(at), self._resistance)
+        if free is None:
             return None
-        δ, operator = self._load(at) / self._resistance, at.contact.operator
-        jump = (self._jump(at) + self._turned(at) * δ).reshape(-1, at.k)
+        δ, operator, jump = free[0], at.contact.operator, free[1].reshape(-1, at.k)
         if (operator.trial(jump)[:, 0] > 0.0).any():
             return None
         force, traction = np.zeros((len(jump), k)), np.zeros((len(operator.weights), k))
-        return Equilibrium(force, traction, np.array([δ]), jump[:, :k], 0, 0.0)
+        return Equilibrium(force, traction, δ, jump[:, :k], 0, 0.0)
 
     def state(self, at: SearchedContact, found: Equilibrium) -> MotionState:
         """The state at its end."""
@@ -137,23 +133,23 @@ class PairStep:
         return self.step.after(np.append(q, ψ))
 
     def _turned(self, at: SearchedContact) -> Floats:
-        """H' (n·k,)."""
-        return at.turned - at.modes @ self._push
+        """H' (n·k, 1)."""
+        return (at.turned - at.modes @ self._push)[:, None]
 
     def _jump(self, at: SearchedContact) -> Floats:
         """The part of J that is known (n·k,)."""
         return at.modes @ (self.step.known[: self.pair.count] / self._modal - self._push * at.searched)
 
-    def _load(self, at: SearchedContact) -> float:
-        """The right side of the balance of δ."""
+    def _load(self, at: SearchedContact) -> Floats:
+        """The right side of the balance of δ (1,)."""
         m, b = self.pair.count, self.step.known
-        return float(self.pair.drive.torque + b[m] - self._push @ b[:m] - self._resistance * at.searched)
+        return self.pair.drive.torque + b[m:] - self._push @ b[:m] - self._resistance[0] * at.searched
 
     @cached_property
-    def _resistance(self) -> float:
-        """D'."""
+    def _resistance(self) -> Floats:
+        """D' (1, 1)."""
         m, D = self.pair.count, self.step.matrix
-        return float(D[m, m] - D[m, :m] @ self._push)
+        return D[m:, m:] - D[m:, :m] @ self._push[:, None]
 
     @cached_property
     def _push(self) -> Floats:

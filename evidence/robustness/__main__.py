@@ -1,6 +1,6 @@
 """`python -m evidence.robustness [PART] [--out docs]`: measures a part, writes OUT/stress.md.
 
-PART: matrix, scenes, levels, wear, dynamics, independence, faults, or all, the default. Each keeps its piece of the
+PART: matrix, scenes, levels, wear, dynamics, independence, faults, malformed, or all, the default. Each keeps its piece of the
 page in OUT/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT`, `level-seeds ...`,
 `wear-seeds ...` and `drive-seeds ...` are the processes that `scenes`, `levels`, `wear` and `dynamics` start.
 """
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import logging
 import sys
+import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ from evidence.claims import Claim
 from evidence.robustness.campaigns import drive_summaries, summaries
 from evidence.robustness.campaigns.campaign import DRIVES, LEVELS, SCENES, WEAR, Trial, campaign, solve_seeds
 from evidence.robustness.faults import fault_claims
+from evidence.robustness.malformed.summary import malformed_summary
+from evidence.robustness.malformed.trials import Verdict, outcomes, trials
 from evidence.robustness.settings.independence import cylinder_claims, gear_claims, iteration_claims, theta_claims
 from evidence.robustness.settings.level_independence import level_claims
 from evidence.robustness.settings.matrix import SHEETS
@@ -112,9 +115,19 @@ def faults(_: Path) -> list[str]:
     return ["## Faults", CLAIMS.markdown(fault_claims())]
 
 
+def malformed(_: Path) -> list[str]:
+    """Malformed input to every command."""
+    with tempfile.TemporaryDirectory() as folder:
+        found = list(outcomes(Path(folder) / "tried", trials()))
+    for each in found:
+        if each.verdict is not Verdict.REFUSED:
+            print(f"{each.command}, {each.wrong}: {each.verdict.value}\n{each.message}", flush=True)
+    return ["## Malformed input", malformed_summary(found)]
+
+
 PARTS: Mapping[str, Callable[[Path], list[str]]] = {
     "matrix": matrix, "scenes": scenes, "levels": levels, "wear": wear, "dynamics": dynamics,
-    "independence": independence, "faults": faults,
+    "independence": independence, "faults": faults, "malformed": malformed,
 }  # fmt: skip
 TRIALS = {trial.command: trial for trial in (SCENES, LEVELS, WEAR, DRIVES)}
 

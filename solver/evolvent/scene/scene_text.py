@@ -31,6 +31,8 @@ LARGEST = 1
 """Largest size of a scene file [MB]."""
 DEEPEST = 8
 """Largest nesting depth of tables and lists; a scene needs three."""
+DEEPEST_KEY = 100
+"""Largest number of dots in a key: tomllib takes hours over a key of half a million parts."""
 UNDECODABLE = (tomllib.TOMLDecodeError, ValueError, RecursionError)
 """Exceptions of tomllib: ValueError for integers of more than 4300 digits, RecursionError for deep nesting."""
 
@@ -63,10 +65,21 @@ def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str
 
 def toml_values(text: str, kind: FileKind = SCENE) -> dict[str, Any]:
     """Nested dictionaries of a TOML text. Raises SceneError."""
+    _require_short_keys(text, kind)
     try:
         return tomllib.loads(text)
     except UNDECODABLE as error:
         raise SceneError([_no_toml(text, error, kind)]) from error
+
+
+def _require_short_keys(text: str, kind: FileKind) -> None:
+    """Raises SceneError where the text has a dotted key, or name of a section, of more parts than any TOML parser is
+    made for."""
+    *parts, _ = re.split(r"([\n={,\]])", text)
+    for part, end in zip(parts[::2], parts[1::2]):
+        if end in "=]" and part.count(".") > DEEPEST_KEY:
+            found, allowed = f"a key of {part.count('.') + 1:,} parts", f"keys of up to {DEEPEST} parts"
+            raise SceneError([InputProblem(kind.name, found, allowed, f"see the documentation for the keys; {kind.example}")])
 
 
 def _no_toml(text: str, error: Exception, kind: FileKind) -> InputProblem:
@@ -127,6 +140,9 @@ def apply_override(values: dict[str, Any], override: str) -> None:
     """Sets one "section.key=value" in the nested values. Raises SceneError."""
     name, equals, text = override.partition("=")
     names = [part.strip() for part in name.split(".")]
+    if not name.isprintable():  # bytes that are no UTF-8, control characters
+        found, allowed = f"a key with {ascii(name)}", "a key of letters, digits and underscores"
+        raise SceneError([InputProblem("--set", found, allowed, "write for example --set load.torque_Nm=300")])
     if not equals or not all(names) or len(names) > DEEPEST:
         remedy = "write for example --set load.torque_Nm=300"
         raise SceneError([InputProblem("--set", shown(override), "section.key=value", remedy)])

@@ -39,11 +39,11 @@ import sys
 from pathlib import Path
 import numpy as np
 from evolvent import Transient
-from tests.solver.contact.transient.test_saved_state import EQUAL, figures, loads, shaken
+from tests.solver.contact.transient.test_saved_state import EQUAL, difference, figures, loads, shaken
 
-moment = Transient.resume(Path(sys.argv[1]), shaken(), EQUAL).solve(loads)
-wanted = np.load(sys.argv[2])
-sys.stdout.write("same\n" if np.array_equal(figures(moment), wanted) else "another\n")
+found = figures(Transient.resume(Path(sys.argv[1]), shaken(), EQUAL).solve(loads))
+with np.load(sys.argv[2]) as wanted:
+    sys.stdout.write(f"{max(difference(found[name], wanted[name]) for name in found)!r}\n")
 """
 
 
@@ -66,12 +66,25 @@ def begun(settings: TransientSettings) -> Transient:
     return Transient(shaken(), settings, InitialState(Step()))
 
 
-def figures(moment: Moment) -> Floats:
-    """All that a moment says, in one array."""
-    contact = moment.solution.contacts[0]
-    scalars = [moment.time, moment.length, moment.error, moment.work, moment.energy.total]
-    fields = [contact.traction, contact.slip, *(moment.solution.displacement(i) for i in range(2))]
-    return np.concatenate([scalars, *moment.velocities, *moment.solution.motions, *(each.ravel() for each in fields)])
+def figures(moment: Moment) -> dict[str, Floats]:
+    """All that a moment says: an array of each unit."""
+    contact, solution = moment.solution.contacts[0], moment.solution
+    lengths = [contact.slip.ravel(), *solution.motions, *(solution.displacement(i).ravel() for i in range(2))]
+    return {
+        "s": np.array([moment.time, moment.length]), "1": np.array([moment.error]),
+        "N mm": np.array([moment.work, moment.energy.total]), "MPa": contact.traction,
+        "mm": np.concatenate(lengths), "mm/s": np.concatenate(moment.velocities),
+    }  # fmt: skip
+
+
+def difference(one: Floats, other: Floats) -> float:
+    """Largest difference of two arrays over the largest entry."""
+    return float(np.abs(one - other).max(initial=0.0) / max(np.abs(other).max(initial=0.0), 1e-300))
+
+
+def same(one: dict[str, Floats], other: dict[str, Floats]) -> bool:
+    """Whether two moments are equal in every bit."""
+    return all(np.array_equal(one[name], other[name]) for name in one)
 
 
 @pytest.mark.parametrize("settings", [EQUAL, ADAPTIVE])
@@ -90,21 +103,23 @@ def test_a_run_goes_on_bit_for_bit(settings: TransientSettings, tmp_path: Path) 
     assert again.time == last.time
     taken_up = [figures(moment) for moment in again.run_until(END, loads)]
     assert len(going_on) == len(taken_up)
-    assert all(np.array_equal(a, b) for a, b in zip(going_on, taken_up))
+    assert all(same(a, b) for a, b in zip(going_on, taken_up))
     forgetful = Transient.resume(path, shaken(), settings)
     assert forgetful._reached is not None
     forgetful._reached = replace(forgetful._reached, deformed=None)
-    assert not np.array_equal(figures(next(iter(forgetful.run_until(END, loads)))), going_on[0])
+    assert not same(figures(next(iter(forgetful.run_until(END, loads)))), going_on[0])
 
 
 @pytest.mark.parametrize("size", on_ranks(1, 2))
 def test_another_program_goes_on(size: int, saved: Path, tmp_path: Path, run_script: Run) -> None:
-    """On one rank, and on two that do the same: the next moment is that of this program, exactly."""
+    """On one rank, and on two that do the same: the next moment is that of this program, to 1e-8 of the largest
+    figure of each unit. Another process condenses the bodies again, and its sums round differently (docs/checks.md)."""
     wanted = figures(Transient.resume(saved, shaken(), EQUAL).solve(loads))
-    np.save(tmp_path / "wanted.npy", wanted)
-    done = run_script("-c", GOING_ON, str(saved), str(tmp_path / "wanted.npy"), ranks=size)
+    np.savez(tmp_path / "wanted.npz", **wanted)
+    done = run_script("-c", GOING_ON, str(saved), str(tmp_path / "wanted.npz"), ranks=size)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.count("same") == size
+    found = [float(line) for line in done.stdout.split()]
+    assert len(found) == size and max(found) < 1e-8
 
 
 def test_lengths_of_steps_may_change(tmp_path: Path) -> None:

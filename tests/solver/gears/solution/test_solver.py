@@ -53,7 +53,8 @@ def gears() -> GearModel:
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_curve_of_the_api_equals_that_of_a_run(run_script: Run, tmp_path: Path, ranks: int) -> None:
     """Problem: He's pair at level quick, four positions, without friction and at μ = 0.1, once by `evolvent run` and
-    once by the API, on as many ranks. Exact: the same transmission errors; and no module of scenes is imported."""
+    once by the API, on as many ranks. Exact: the same transmission errors, to 1e-9, to which Newton's method
+    repeats in two processes (docs/checks.md); and no module of scenes is imported."""
     settings = [*QUIET, f"sweep.positions={POSITIONS}", f"contact.friction={list(FRICTIONS)}", "mesh.level='quick'"]
     words = [word for setting in settings for word in ("--set", setting)]
     out = tmp_path / "run"
@@ -65,7 +66,7 @@ def test_curve_of_the_api_equals_that_of_a_run(run_script: Run, tmp_path: Path, 
     done = run_script("tests/support/gears_api_curve.py", str(POSITIONS), *map(str, FRICTIONS), ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
     found: dict[str, Any] = json.loads(done.stdout)
-    np.testing.assert_allclose(found["curves"], expected, rtol=1e-12, atol=0.0)
+    np.testing.assert_allclose(found["curves"], expected, rtol=1e-9, atol=0.0)
     assert found["scenes"] == []
 
 

@@ -1,0 +1,1 @@
+"""Malformed input to every command of the command line."""

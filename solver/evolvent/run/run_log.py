@@ -55,11 +55,11 @@ class LogFile(logging.Handler):
 
     def _open(self) -> None:
         self._folder.list_log()
-        with open(self.path, self._mode, encoding="utf-8") as stream:
+        with open(self.path, self._mode, encoding="utf-8", errors="backslashreplace") as stream:  # names of files
             stream.writelines(self._held)
 
     def _append(self, line: str) -> None:
-        with open(self.path, "a", encoding="utf-8") as stream:
+        with open(self.path, "a", encoding="utf-8", errors="backslashreplace") as stream:
             stream.write(line)
 
     def _guarded(self, write: Callable[[], None]) -> None:

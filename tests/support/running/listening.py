@@ -48,15 +48,16 @@ def listening(pid: int) -> Found:
     }  # fmt: skip
 
 
-def has_started_mpi(pid: int) -> bool:
-    """Whether the process or one below it has loaded what comes after MPI."""
-    for each in processes(pid):
-        try:
-            if LIBRARY in Path(f"/proc/{each}/maps").read_text():
-                return True
-        except OSError:
-            continue
-    return False
+def started_mpi(pid: int) -> int:
+    """How many of the process and those below it have loaded what comes after MPI."""
+    return sum(_has_loaded(each, LIBRARY) for each in processes(pid))
+
+
+def _has_loaded(pid: int, library: str) -> bool:
+    try:
+        return library in Path(f"/proc/{pid}/maps").read_text()
+    except OSError:  # it has ended
+        return False
 
 
 def watched(

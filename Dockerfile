@@ -6,15 +6,14 @@ RUN /opt/evolvent/packages/install && apt-get clean && rm -rf /var/lib/apt/lists
 
 COPY . /opt/evolvent
 RUN /opt/evolvent/packages/venv /opt/venv \
- && install -d -m 1777 -o evolvent /out /var/cache/evolvent \
+ && install -d -m 1777 -o evolvent /out \
  && ln -s /opt/evolvent/packages/entry /usr/local/bin/evolvent
 
-# Compiled forms and fonts are cached where any user (docker run --user) may write. The rest: one BLAS thread a rank;
-# ranks on this machine talk through shared memory only, without the ptrace right that containers lack.
+# One BLAS thread a rank; ranks on this machine talk through shared memory only, without the ptrace right that containers
+# lack. Compiled code is kept in each user's home, or without one (docker run --user) in a folder of that user's in /tmp:
+# a folder that several users may write to would let one run code as another.
 ENV PATH=/usr/local/bin:/opt/venv/bin:/usr/bin:/bin \
     PYTHONDONTWRITEBYTECODE=1 \
-    XDG_CACHE_HOME=/var/cache/evolvent \
-    MPLCONFIGDIR=/var/cache/evolvent/matplotlib \
     MPLBACKEND=Agg \
     PYVISTA_OFF_SCREEN=true \
     OMP_NUM_THREADS=1 \

@@ -9,6 +9,7 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import BinaryIO
 
 from evolvent_meshes.errors import EvolventError, InputError
@@ -67,6 +68,16 @@ def atomic_file(path: Path, size: int) -> Iterator[Path]:
     finally:
         with contextlib.suppress(OSError):  # it was renamed to `path`, or never written
             part.unlink()
+
+
+@contextmanager
+def plain_name(path: Path, suffix: str) -> Iterator[Path]:
+    """Context with another name of a file, by a link, in a folder without other files: for programs that take no name
+    whose bytes are not UTF-8."""
+    with TemporaryDirectory() as folder:
+        alias = Path(folder) / f"file{suffix}"
+        alias.symlink_to(path.resolve())
+        yield alias
 
 
 def write_text(path: Path, text: str) -> Path:

@@ -7,6 +7,7 @@ and `evolvent.wear` have those of gear pairs and of wear. Each is imported when 
 from importlib import metadata
 from typing import TYPE_CHECKING
 
+from evolvent.fem.parallel.mpi_start import start_alone_quietly
 from evolvent_meshes.lazy_names import lazy_names
 
 if TYPE_CHECKING:
@@ -62,6 +63,8 @@ if TYPE_CHECKING:
     from evolvent_meshes.mesh.mesh_data import MeshError as MeshError
 else:
     __all__, __getattr__, __dir__ = lazy_names(__name__)
+
+start_alone_quietly()
 
 try:
     __version__ = metadata.version("evolvent")

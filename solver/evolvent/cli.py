@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from mpi4py import MPI
 
 from evolvent.computing import (
     DYNAMICS_EPILOG,
@@ -27,8 +26,17 @@ from evolvent.computing import (
     run,
     transient,
 )
-from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
+from evolvent.failures import (
+    STATUSES,
+    Exit,
+    flushed,
+    leave,
+    reported,
+    silent_except_on_first,
+    tolerate_terminal_encoding,
+)  # fmt: skip
 from evolvent.fem.backend.cache_folder import keep_fonts
+from evolvent.fem.parallel.mpi_start import is_first
 from evolvent.options import (
     Force,
     LevelOption,
@@ -109,7 +117,7 @@ def check(
     That is: the gear data, the Hertz estimates, what will be skipped, and an estimate of dofs and memory.
     """
     with reported():
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_SELF)
+        loaded = loaded_scene(scene, level, settings, no_skip)
         from evolvent.scene.checking.check_report import overview
 
         if out is not None:
@@ -137,9 +145,9 @@ def mesh(
     One tooth sector of each gear, in contact at the pitch point, with named groups.
     """
     with reported():
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_SELF)
+        loaded = loaded_scene(scene, level, settings, no_skip)
         _require_new(out, ".msh", overwrite)
-        require_room(loaded, "mesh", force, MPI.COMM_SELF)
+        require_room(loaded, "mesh", force)
         from evolvent.gears.meshing.levelled_meshes import is_two_level
         from evolvent.gears.meshing.standing_pair import standing_pair
         from evolvent.results.tables.run_warnings import WORST_CELL, bad_cells
@@ -219,20 +227,30 @@ def info() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status. arguments: by default sys.argv[1:]."""
     given = sys.argv[1:] if arguments is None else list(arguments)
-    if MPI.COMM_WORLD.rank > 0 and given[:1] not in ([name] for name in SHARED):
-        return Exit.DONE
-    if arguments is None:
-        tolerate_terminal_encoding()
-    with silent_except_on_first():
-        keep_fonts()
-        try:
-            status = app(args=given or ["--help"], prog_name="evolvent", standalone_mode=False)
-        except UsageError as error:
-            return leave(usage_message(error), Exit.BAD_INPUT).exit_code
-        except typer.Abort:
-            return Exit.FAILED
-        except SystemExit as end:
-            return end.code if isinstance(end.code, int) else Exit.FAILED
+    try:
+        if not is_first() and given[:1] not in ([name] for name in SHARED):
+            return Exit.DONE
+        if arguments is None:
+            tolerate_terminal_encoding()
+        with silent_except_on_first():
+            keep_fonts()
+            return flushed(_status(given))
+    except BrokenPipeError:
+        return flushed(Exit.PIPE_CLOSED)
+
+
+def _status(given: list[str]) -> int:
+    """The exit status of a command."""
+    try:
+        status = app(args=given or ["--help"], prog_name="evolvent", standalone_mode=False)
+    except UsageError as error:
+        return leave(usage_message(error), Exit.BAD_INPUT).exit_code
+    except typer.Abort:
+        return Exit.FAILED
+    except SystemExit as end:
+        if isinstance(end.__context__, BrokenPipeError):  # click's answer to it
+            return Exit.PIPE_CLOSED
+        return end.code if isinstance(end.code, int) else Exit.FAILED
     if not given:
         return Exit.BAD_INPUT  # nothing was asked for; versions of click disagree on the status of the help then
     return status if isinstance(status, int) else Exit.DONE

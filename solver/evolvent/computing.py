@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from mpi4py import MPI
 
 from evolvent.command_output import done, warn
 from evolvent.failures import STATUSES, reported
+from evolvent.fem.parallel.mpi_start import world
 from evolvent.options import (
     Force,
     LevelOption,
@@ -100,11 +100,11 @@ def run(
     pictures go to DIR.
     """
     with reported(parallel=True, advice=RESUME.format("run")):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        loaded = loaded_scene(scene, level, settings, no_skip, world())
         require(not (resume and overwrite), BOTH)
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
-        require_room(loaded, "run", force, MPI.COMM_WORLD)
+        require_room(loaded, "run", force, world())
         from evolvent.run.output import last_lines
         from evolvent.run.scene_run import run_scene
 
@@ -130,7 +130,7 @@ def loads(
     The gears are condensed once. DIR gets the folder of a run for each load, and loads.csv and pictures/loads.png.
     """
     with reported(parallel=True, advice=RESUME.format("loads")):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        loaded = loaded_scene(scene, level, settings, no_skip, world())
         require(not (resume and overwrite), BOTH)
         from evolvent.run.load_list import run_loads
 
@@ -158,15 +158,15 @@ def excitation(
     loaded one and the mesh stiffness, tangent and secant, with their mesh harmonics. The gears are condensed once.
     """
     with reported(parallel=True, advice=RESUME.format("excitation")):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        loaded = loaded_scene(scene, level, settings, no_skip, world())
         require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.excitation import run_excitation
         from evolvent.run.dynamics.scene_torques import scene_torques
 
         torques = scene_torques(loaded, percent)
-        require_room(torques.scene, "run", force, MPI.COMM_WORLD)
+        require_room(torques.scene, "run", force, world())
         warn(run_excitation(torques, out, resume, overwrite, quiet))
-        if not quiet and MPI.COMM_WORLD.rank == 0:
+        if not quiet and world().rank == 0:
             done(out, "excitation.csv", "harmonics.csv", "pictures/excitation.png")
 
 
@@ -189,13 +189,13 @@ def dynamics(
     the dynamic factor of ISO 6336-1 beside, as the section [dynamics] of the scene says.
     """
     with reported(parallel=True, advice=RESUME.format("dynamics")):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        loaded = loaded_scene(scene, level, settings, no_skip, world())
         require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.vibration import run_dynamics
 
-        require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
+        require_room(unworn(loaded), "run", force, world())
         warn(run_dynamics(loaded, out, resume, overwrite, quiet))
-        if not quiet and MPI.COMM_WORLD.rank == 0:
+        if not quiet and world().rank == 0:
             done(out, "response.csv", "dynamics.json", "pictures/vibration.png", "pictures/waterfall.png")
 
 
@@ -216,13 +216,13 @@ def transient(
     transmission error, mesh force and contact pressure, beside those without inertia.
     """
     with reported(parallel=True, advice=RESUME.format("transient")):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        loaded = loaded_scene(scene, level, settings, no_skip, world())
         require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.transient.transient_run import run_transient
 
-        require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
+        require_room(unworn(loaded), "run", force, world())
         warn(run_transient(unworn(loaded), out, resume, overwrite, quiet))
-        if not quiet and MPI.COMM_WORLD.rank == 0:
+        if not quiet and world().rank == 0:
             from evolvent.run.dynamics.transient.summary_lines import summary_lines
 
             for line in summary_lines(out):
@@ -237,5 +237,5 @@ def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str
 
     scenes = load_scenes(scene, percents)
     for each in scenes.values():
-        require_room(each, "run", force, MPI.COMM_WORLD)
+        require_room(each, "run", force, world())
     return scenes

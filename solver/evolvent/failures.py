@@ -9,6 +9,8 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import select
+import signal
 import sys
 import time
 import traceback
@@ -16,8 +18,8 @@ from collections.abc import Iterator
 from enum import IntEnum
 
 import typer
-from mpi4py import MPI
 
+from evolvent.fem.parallel.mpi_start import is_first, launched, world
 from evolvent.scene.schema.errors import SceneError
 from evolvent.stopping import stoppable
 from evolvent_meshes.errors import EvolventError
@@ -30,6 +32,8 @@ class Exit(IntEnum):
     FAILED = 1
     BAD_INPUT = 2
     NOT_CONVERGED = 3
+    PIPE_CLOSED = 128 + signal.SIGPIPE
+    """Nobody reads what is printed, as after `| head`: that of a program that the signal ends."""
 
 
 STATUSES = "Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else."
@@ -55,6 +59,10 @@ def reported(parallel: bool = False, advice: str = "") -> Iterator[None]:
             _end_all()
         raise typer.Exit(int(Exit.FAILED)) from error
     except Exception as error:
+        if isinstance(error, BrokenPipeError) and output_is_closed():
+            if parallel:
+                _end_all()
+            raise typer.Exit(int(Exit.PIPE_CLOSED)) from error
         status = Exit(error.exit_status) if isinstance(error, EvolventError) else Exit.FAILED
         expected = isinstance(error, (EvolventError, OSError, MemoryError))
         message = str(error) if expected else f"{_traceback(error)}\n{type(error).__name__}: {error}"
@@ -77,19 +85,47 @@ def leave(message: str, status: Exit, problems: bool = False) -> typer.Exit:
 
 def _end_all() -> None:
     """Ends all ranks, if there are several."""
-    if MPI.COMM_WORLD.size > 1:
-        MPI.COMM_WORLD.Abort(int(Exit.FAILED))
+    if launched() and world().size > 1:
+        world().Abort(int(Exit.FAILED))
 
 
 def _abort_others(parallel: bool, message: str, status: Exit) -> None:
     """Prints the message and ends all ranks: one that waits in a collective call would wait for ever."""
-    world = MPI.COMM_WORLD
-    if not parallel or world.size == 1:
+    if not parallel or not launched() or world().size == 1:
         return
-    if world.rank > 0:
+    if world().rank > 0:
         time.sleep(1.0)  # if all ranks fail alike, only rank 0 prints
-    print(f"evolvent, rank {world.rank} of {world.size}: {message}", file=sys.__stderr__, flush=True)
-    world.Abort(int(status))
+    print(f"evolvent, rank {world().rank} of {world().size}: {message}", file=sys.__stderr__, flush=True)
+    world().Abort(int(status))
+
+
+def output_is_closed() -> bool:
+    """Whether standard output or error is a pipe that nobody reads."""
+    for stream in _streams():
+        poll = select.poll()
+        poll.register(stream.fileno(), 0)
+        if any(event & select.POLLERR for _, event in poll.poll(0)):
+            return True
+    return False
+
+
+def flushed(status: int) -> int:
+    """The exit status once all is printed: `PIPE_CLOSED` where nobody reads it, 1 where it cannot be written. What is
+    left is discarded, for Python would try again at its end, and complain."""
+    for stream in _streams():
+        try:
+            stream.flush()
+        except OSError as error:
+            closed = isinstance(error, BrokenPipeError)
+            status = int(Exit.PIPE_CLOSED) if closed else status or int(Exit.FAILED)
+            with open(os.devnull, "wb") as nowhere:
+                os.dup2(nowhere.fileno(), stream.fileno())
+    return status
+
+
+def _streams() -> list[io.TextIOWrapper]:
+    """Standard output and error, where they are open files."""
+    return [stream for stream in (sys.stdout, sys.stderr) if isinstance(stream, io.TextIOWrapper) and not stream.closed]
 
 
 def tolerate_terminal_encoding() -> None:
@@ -102,7 +138,7 @@ def tolerate_terminal_encoding() -> None:
 @contextlib.contextmanager
 def silent_except_on_first() -> Iterator[None]:
     """Context in which only rank 0 prints: messages of the other ranks would repeat its own."""
-    if MPI.COMM_WORLD.rank == 0:
+    if is_first():
         yield
         return
     with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere), contextlib.redirect_stderr(nowhere):

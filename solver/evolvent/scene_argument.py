@@ -8,29 +8,37 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
-from mpi4py import MPI
 
 from evolvent.scene.schema.errors import SceneError
 
 if TYPE_CHECKING:
+    from mpi4py import MPI
+
     from evolvent.scene.scene import Scene
 
 
 def loaded_scene(
-    path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None, comm: MPI.Comm
+    path: Path,
+    level: str | None,
+    settings: Sequence[str] | None,
+    no_skip: Sequence[str] | None,
+    comm: MPI.Comm | None = None,
 ) -> Scene:
-    """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks."""
+    """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks.
+
+    comm: the ranks that take part; None: this process alone, without MPI.
+    """
     from evolvent.scene.scene import load_scene
 
     result: Scene | SceneError | None = None
-    if comm.rank == 0:
+    if comm is None or comm.rank == 0:
         try:
             overrides = with_level(settings, level)
             overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
             result = load_scene(path, overrides)
         except SceneError as error:
             result = SceneError(error.problems, error.source)  # causes and tracebacks may not be fit to be sent
-    result = comm.bcast(result)
+    result = result if comm is None else comm.bcast(result)
     assert result is not None
     if isinstance(result, SceneError):
         raise result
@@ -42,8 +50,11 @@ def with_level(settings: Sequence[str] | None, level: str | None) -> list[str]:
     return [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
 
 
-def require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> None:
-    """Raises SceneError where the machine has too little memory for the command. force: do not check. Collective."""
+def require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm | None = None) -> None:
+    """Raises SceneError where the machine has too little memory for the command. force: do not check. Collective.
+
+    comm: the ranks that take part; None: this process alone, without MPI.
+    """
     from evolvent.scene.checking.problem_size import MEMORY_OF, require_memory
 
     if not force:

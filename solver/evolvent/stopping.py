@@ -10,7 +10,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from types import FrameType
 
@@ -94,7 +94,8 @@ def _watch(reader: socket.socket, done: threading.Event, advice: str, end: Calla
     while number := reader.recv(1):
         if number[0] in SIGNALS:
             message = _message(number[0], advice)
-            print(f"evolvent: {message}", file=sys.stderr, flush=True)
+            with suppress(OSError):  # nobody reads it
+                print(f"evolvent: {message}", file=sys.stderr, flush=True)
             if not done.wait(GLANCE) and (log := logging.getLogger(LOGGER)).hasHandlers():
                 log.error("%s", message)  # in place of the main thread
             if not done.wait(PATIENCE):

@@ -4,10 +4,10 @@ flanks. All ranks take part in them."""
 from __future__ import annotations
 
 import typer
-from mpi4py import MPI
 
 from evolvent.command_output import done, warn
 from evolvent.failures import STATUSES, reported
+from evolvent.fem.parallel.mpi_start import world
 from evolvent.options import Force, LevelOption, NoSkip, Overrides, Overwrite, Quiet, SceneFile, TablesFolder
 from evolvent.scene_argument import loaded_scene, require_room, unworn
 
@@ -44,12 +44,12 @@ def strength(
     points of load. Nominal stresses: load factors multiply them.
     """
     with reported(parallel=True):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        loaded = loaded_scene(scene, level, settings, no_skip, world())
         from evolvent.run.strength.strength_run import run_strength
 
-        require_room(unworn(loaded), "strength", force, MPI.COMM_WORLD)
+        require_room(unworn(loaded), "strength", force, world())
         warn(run_strength(loaded, out, overwrite, quiet))
-        if not quiet and MPI.COMM_WORLD.rank == 0:
+        if not quiet and world().rank == 0:
             from evolvent.run.strength.summary_lines import summary_lines
 
             for line in summary_lines(out):
@@ -73,12 +73,12 @@ def fatigue(
     lives at several friction coefficients relative to the first.
     """
     with reported(parallel=True):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        loaded = loaded_scene(scene, level, settings, no_skip, world())
         from evolvent.run.strength.fatigue_run import run_fatigue
 
-        require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
+        require_room(unworn(loaded), "run", force, world())
         warn(run_fatigue(loaded, out, overwrite, quiet))
-        if not quiet and MPI.COMM_WORLD.rank == 0:
+        if not quiet and world().rank == 0:
             from evolvent.run.strength.fatigue_lines import fatigue_lines
 
             for line in fatigue_lines(out):

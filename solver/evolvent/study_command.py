@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from mpi4py import MPI
 
 from evolvent.failures import STATUSES, reported
+from evolvent.fem.parallel.mpi_start import world
 from evolvent.options import Force, LevelOption, Overrides, Quiet, given_path
 from evolvent.scene_argument import require, with_level
 
@@ -53,8 +53,8 @@ def study(
     that are in DIR already are not computed again.
     """
     with reported(advice="; the same command goes on"):
-        ranks = f"study: found {MPI.COMM_WORLD.size} MPI ranks; allowed: one; remedy: leave out mpirun, give --workers"
-        require(MPI.COMM_WORLD.size == 1, ranks)
+        ranks = f"study: found {world().size} MPI ranks; allowed: one; remedy: leave out mpirun, give --workers"
+        require(world().size == 1, ranks)
         both = "--workers: found --scheduler, too; allowed: one of them; remedy: a scheduler has its own workers"
         require(workers is None or scheduler is None, both)
         cores = len(os.sched_getaffinity(0))

@@ -57,7 +57,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "fem.backend", "contact.problem", "contact.step", "gears.problem", "gears", "gears.sweep",
         "gears.pressure",
     ),
-    "dynamics.oscillator": ("meshes",),
+    "dynamics.oscillator": ("meshes", "fem.backend"),
     "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
     "dynamics": (
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
@@ -176,8 +176,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "run.study.plan", "run.study.results", "run.study.figures",
     ),
     "cli": (
-        "meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "results.drawing", "wear",
-        "run.*",
+        "meshes", "meshes.mesh", "fem.backend", "fem.parallel", "gears.meshing", "scene.*", "results.tables",
+        "results.drawing", "wear", "run.*",
     ),
 }  # fmt: skip
 """Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""

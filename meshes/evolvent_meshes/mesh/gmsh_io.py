@@ -8,13 +8,12 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import gmsh
 import numpy as np
 
 from evolvent_meshes.arrays import Floats, Ints
-from evolvent_meshes.files import atomic_file
+from evolvent_meshes.files import atomic_file, plain_name
 from evolvent_meshes.input_checks import shown
 from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, FACET_SHAPE, REVERSED_CELL, MeshData, MeshError
 
@@ -59,6 +58,7 @@ def read_msh(path: Path | str) -> MeshData:
 
     Raises MeshError for an unusable mesh, NoMeshFile where there is no file.
 
+    >>> from tempfile import TemporaryDirectory
     >>> from evolvent_meshes.shapes.blocks import rectangle
     >>> with TemporaryDirectory() as folder:
     ...     write_msh(rectangle(40.0, 20.0, nx=4, ny=2), f"{folder}/block.msh")
@@ -69,9 +69,7 @@ def read_msh(path: Path | str) -> MeshData:
     if not isinstance(path, str | os.PathLike):
         raise MeshError(f"mesh file: wanted the path of a gmsh file, found {shown(path)}; write read_msh('block.msh')")
     _refuse_scripts(Path(path))
-    with gmsh_model("read"), TemporaryDirectory() as folder:
-        alias = Path(folder) / "mesh.msh"
-        alias.symlink_to(Path(path).resolve())  # away from a .opt file beside it, which gmsh would execute
+    with gmsh_model("read"), plain_name(Path(path), ".msh") as alias:  # away from a .opt file, which gmsh would execute
         try:
             gmsh.merge(str(alias))
         except Exception as error:
@@ -231,12 +229,13 @@ def write_msh(mesh: MeshData, path: Path | str) -> None:
     Raises MeshError for cells of no volume group, which gmsh would leave out; WriteError.
     """
     path = Path(path)
-    with gmsh_model("write"), atomic_file(path, 8 * mesh.points.size + 8 * mesh.cells.size) as part:
+    size = 8 * mesh.points.size + 8 * mesh.cells.size
+    with gmsh_model("write"), atomic_file(path, size) as part, plain_name(part, path.suffix) as alias:
         to_gmsh(mesh)
         binary = gmsh.option.getNumber("Mesh.Binary")
         gmsh.option.setNumber("Mesh.Binary", 1)  # a text file would round the coordinates
         try:
-            gmsh.write(str(part))
+            gmsh.write(str(alias))
         except Exception as error:  # gmsh raises nothing narrower
             raise OSError(str(error)) from error
         finally:

@@ -8,11 +8,13 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-
-from mpi4py import MPI
+from typing import TYPE_CHECKING
 
 from evolvent.results.archive.run_folder import LOG, RunFolder
 from evolvent_meshes.errors import InputError
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 LOGGER = "evolvent"
 """Name of the standard logger to which all modules log; the log file of a run is a handler of it."""
@@ -42,8 +44,10 @@ class LogFile(logging.Handler):
             self._guarded(self._open)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Buffers or writes a line."""
+        """Buffers or writes a line; a warning is printed on stderr, too, whichever module it comes from."""
         line = self.format(record) + "\n"
+        if record.levelno == logging.WARNING:
+            print(f"evolvent: {record.getMessage()}", file=sys.stderr)
         if self._begun:
             self._guarded(lambda: self._append(line))
         else:
@@ -51,11 +55,11 @@ class LogFile(logging.Handler):
 
     def _open(self) -> None:
         self._folder.list_log()
-        with open(self.path, self._mode, encoding="utf-8") as stream:
+        with open(self.path, self._mode, encoding="utf-8", errors="backslashreplace") as stream:  # names of files
             stream.writelines(self._held)
 
     def _append(self, line: str) -> None:
-        with open(self.path, "a", encoding="utf-8") as stream:
+        with open(self.path, "a", encoding="utf-8", errors="backslashreplace") as stream:
             stream.write(line)
 
     def _guarded(self, write: Callable[[], None]) -> None:
@@ -86,8 +90,6 @@ class RunLog:
     def warning(self, message: str) -> None:
         """A line of the log, also printed on stderr."""
         self._logger.warning("warning: %s", message)
-        if self._handler is not None:
-            print(f"evolvent: warning: {message}", file=sys.stderr)
 
     def error(self, message: str, *values: object) -> None:
         """A line of the log on why the run ended."""

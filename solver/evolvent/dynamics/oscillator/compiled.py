@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
+import numba
 from numba import njit
+
+from evolvent.fem.backend.cache_folder import CacheError, cache_directory
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 def compiled(function: F) -> F:
-    """The function in compiled code. In an installation and with a home that cannot be written to, nothing is kept: it
-    is compiled again in each run, for some seconds."""
+    """The function in compiled code, kept in our cache folder. Where none can be written nothing is kept: it is
+    compiled again in each run, for some seconds."""
     try:
-        kept: F = njit(cache=True, error_model="numpy")(function)
-    except RuntimeError:  # of Numba's: no locator available
+        with _kept_in(str(cache_directory(f"numba-{numba.__version__}"))):
+            kept: F = njit(cache=True, error_model="numpy")(function)
+    except (CacheError, RuntimeError):  # RuntimeError of Numba's: no locator available
         kept = njit(error_model="numpy")(function)
     return kept
+
+
+@contextmanager
+def _kept_in(folder: str) -> Iterator[None]:
+    """Context in which Numba keeps the code of what is decorated in a folder. Its own choice, ~/.cache/numba, may be
+    written by other users, and what is read from it is a program."""
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = folder
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before

@@ -20,6 +20,7 @@ import ufl
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from evolvent.fem.backend.foreign_settings import importing
 from evolvent.fem.backend.form_compiler import compiling, form_directory, logging_kept
 from evolvent.fem.backend.petsc import PETSc  # before dolfinx, which would start it
 from evolvent_meshes.arrays import Floats, Ints
@@ -27,7 +28,7 @@ from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, MeshData, MeshError
 from evolvent_meshes.mesh.reference_cells import node_count
 from evolvent_meshes.mesh.soundness import check_cells
 
-with logging_kept():  # FFCx adds a handler to the root logger and captures warnings
+with logging_kept(), importing():  # FFCx adds a handler to the root logger and captures warnings
     import dolfinx
     import dolfinx.fem.petsc
     from dolfinx import cpp, fem

@@ -11,6 +11,7 @@ from __future__ import annotations
 import errno
 import fcntl
 import logging
+import os
 import shutil
 import sys
 import warnings
@@ -19,6 +20,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from evolvent.fem.backend.cache_folder import cache_directory
+from evolvent.fem.backend.compiler_options import refused_options
+from evolvent.fem.backend.foreign_settings import no_options_files
 from evolvent_meshes.errors import EvolventError
 
 COMPILER_PACKAGES = ("distutils", "_distutils", "setuptools")
@@ -69,7 +72,7 @@ def compiling(version: str) -> Iterator[None]:
     """
     directory = form_directory(version)
     try:
-        with open(directory / "lock", "w") as lock, _silent_compiler():
+        with open(directory / "lock", "w") as lock, _silent_compiler(), no_options_files():
             fcntl.flock(lock, fcntl.LOCK_EX)
             _remove_half_written(directory)
             yield
@@ -110,13 +113,18 @@ def _cause(error: BaseException | None, directory: Path) -> str:
     while error is not None and error not in known:
         known.append(error)
         error = error.__cause__ or error.__context__
-    numbers = {each.errno for each in known if isinstance(each, OSError)}
+    numbers = {each.errno for each in known if isinstance(each, OSError) and _lies_in(each.filename, directory)}
     failed = [each for each in known if type(each).__name__ in COMPILER_ERRORS]
     room = shutil.disk_usage(directory).free
     if numbers & FULL or (failed and room < LEAST_ROOM):
         return f"{room / 1e6:.1f} MB left on its disk; free some, or {remedy}"
     if failed:
-        return f"{failed[-1]}; install a C compiler (packages/install does)"
+        return refused_options() or f"{failed[-1]}; install a C compiler (packages/install does)"
     if numbers & FORBIDDEN:
         return f"no right to write; {remedy}"
     return ""
+
+
+def _lies_in(name: object, directory: Path) -> bool:
+    """Whether an error is about a file of the folder, or names none: that of another place has another remedy."""
+    return not isinstance(name, (str, bytes)) or Path(os.fsdecode(name)).is_relative_to(directory)

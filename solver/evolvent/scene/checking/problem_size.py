@@ -6,9 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any
-
-from mpi4py import MPI
+from typing import TYPE_CHECKING, Any
 
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.gears.meshing.companion_meshes import coarser_levels
@@ -27,6 +25,9 @@ from evolvent.scene.schema.output import SkipSection
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.gears.member import Member
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 MEGABYTES_BASE = {2: 150.0, 3: 250.0}
 MEGABYTES_PER_DOF = {2: 2.5e-3, 3: 1e-2}
@@ -172,14 +173,25 @@ def _counted_dofs(scene: Scene) -> str:
     return f"{counted(sum(size.dofs for size in sector_sizes(scene)))} degrees of freedom{flanks}"
 
 
-def require_memory(scene: Scene, needed: MemoryEstimate, comm: MPI.Comm) -> None:
-    """Raises SceneError on all ranks where one of their machines has too little memory. Collective."""
-    node = comm.Split_type(MPI.COMM_TYPE_SHARED)
-    processes = node.size
-    node.Free()
-    for problem in comm.allgather(room_problem(scene, needed, processes)):
+def require_memory(scene: Scene, needed: MemoryEstimate, comm: MPI.Comm | None) -> None:
+    """Raises SceneError on all ranks where one of their machines has too little memory. Collective.
+
+    comm: the ranks that take part; None: this process alone, without MPI.
+    """
+    found = room_problem(scene, needed, 1 if comm is None else _ranks_of_machine(comm))
+    for problem in [found] if comm is None else comm.allgather(found):
         if problem is not None:
             raise SceneError([problem])
+
+
+def _ranks_of_machine(comm: MPI.Comm) -> int:
+    """Number of ranks on this machine. Collective."""
+    from mpi4py import MPI
+
+    node = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    count: int = node.size
+    node.Free()
+    return count
 
 
 def gigabytes(megabytes: float) -> str:

@@ -5,13 +5,15 @@ Each test is a process of its own with an empty cache, for what is imported or c
 
 from __future__ import annotations
 
+import errno
 import logging
 import os
 from pathlib import Path
 
 import pytest
 
-from evolvent.fem.backend.form_compiler import logging_kept
+from evolvent.fem.backend.dolfinx_compat import versions
+from evolvent.fem.backend.form_compiler import CompileError, compiling, form_directory, logging_kept
 from tests.support.running.fresh_process import FORM, python
 
 
@@ -100,3 +102,28 @@ def test_missing_compiler_is_named(tmp_path: Path) -> None:
     done = python(FORM, XDG_CACHE_HOME=str(tmp_path), CC="no-such-compiler")
     assert done.returncode == 1
     assert "no-such-compiler" in done.stderr.splitlines()[-1] and "packages/install" in done.stderr.splitlines()[-1]
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [("CFLAGS", "-O2 -nonsense=3", "unrecognized command-line option"), ("LDFLAGS", "-lnothing", "cannot find -lnothing")],
+)
+def test_options_that_the_compiler_refuses_are_named(name: str, options: str, words: str, tmp_path: Path) -> None:
+    """There is a compiler, but not for these options: the variable, its value, the compiler's words, and no advice to
+    install one."""
+    done = python(FORM, XDG_CACHE_HOME=str(tmp_path), **{name: options})
+    last = done.stderr.splitlines()[-1]
+    assert done.returncode == 1
+    assert f"{name}={options!r}" in last and words in last and f"unset {name}" in last
+    assert "install" not in last
+
+
+def test_an_error_elsewhere_is_not_blamed_on_the_cache_folder(tmp_path: Path) -> None:
+    """A file that may not be read while a form is compiled, in another folder: its own error, without a cause that is
+    none; in the cache folder: no right to write."""
+    version = versions()["dolfinx"]
+    directory = form_directory(version)
+    for path, wanted in ((tmp_path / "other.json", PermissionError), (directory / "form.c", CompileError)):
+        with pytest.raises(wanted) as caught, compiling(version):
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
+        assert ("no right to write" in str(caught.value)) == (wanted is CompileError)

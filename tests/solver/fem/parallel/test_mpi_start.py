@@ -1,0 +1,60 @@
+"""How MPI starts: settings of a process alone, which its children do not inherit; a temporary folder it cannot use."""
+
+from __future__ import annotations
+
+import pytest
+
+from evolvent.fem.parallel.mpi_start import LAUNCHERS, launched
+from tests.support.running.fresh_process import NOWHERE, python
+from tests.support.running.processes import Run
+
+PORTS = """
+import os
+before = dict(os.environ)
+import evolvent
+from mpi4py import MPI
+assert dict(os.environ) == before and evolvent
+from tests.support.running.listening import listening
+print(len(listening(os.getpid())))
+"""
+
+
+@pytest.mark.parametrize(("btl", "ports"), [("", False), ("tcp,self", True)])
+def test_settings_of_a_process_alone(btl: str, ports: bool) -> None:
+    """MPI that `evolvent` has started opens no port and leaves the environment as it was, so that a mpirun which the
+    program starts has none of these settings; where the user asks for TCP, MPI has its ports."""
+    done = python(PORTS, OMPI_MCA_btl=btl)
+    assert done.returncode == 0, done.stderr
+    assert (int(done.stdout) > 0) == ports
+
+
+@pytest.mark.mpi
+def test_ranks_have_the_settings_of_mpirun(run_script: Run) -> None:
+    """Two ranks reach each other: those of a process alone, which reaches nobody, are not theirs."""
+    program = "import evolvent; from mpi4py import MPI; print(MPI.COMM_WORLD.allreduce(1), evolvent.__name__)"
+    done = run_script("-c", program, ranks=2)
+    assert done.stdout.splitlines() == ["2 evolvent"] * 2, done.stderr
+
+
+def test_launchers_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process without a launcher's variable is alone; with any of them it is a rank."""
+    for name in LAUNCHERS:
+        monkeypatch.delenv(name, raising=False)
+    assert not launched()
+    for name in LAUNCHERS:
+        with monkeypatch.context() as patch:
+            patch.setenv(name, "0")
+            assert launched()
+
+
+@pytest.mark.parametrize("name", ["TMPDIR", "TEMP"])
+def test_temporary_folder_that_cannot_be_written(name: str) -> None:
+    """MPI's own answer are forty lines and the end of the process. Here: an error with the variable and the remedy."""
+    others = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), "")
+    done = python("import evolvent; from mpi4py import MPI", **{**others, name: NOWHERE})
+    assert done.returncode == 1
+    last = done.stderr.splitlines()[-1]
+    assert last.startswith(f"evolvent_meshes.errors.InputError: {name}: found {NOWHERE}, where MPI cannot keep its files")
+    assert f"remedy: export {name}=/tmp" in last
+    assert "ompi" not in done.stderr.lower()
+

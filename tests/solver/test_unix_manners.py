@@ -1,0 +1,167 @@
+"""The command line among other programs of Unix: its output's reader leaves, it is interrupted at once, its words are no
+UTF-8, its disk is full."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from evolvent.cli import app, main
+from evolvent.failures import Exit, flushed
+from tests.support.checkout import PYTHONPATH, ROOT
+from tests.support.running.fresh_process import NOWHERE
+from tests.support.scene_texts import HE
+
+EVOLVENT = (sys.executable, "-m", "evolvent")
+COMMANDS = [str(each.name or each.callback.__name__) for each in app.registered_commands if each.callback is not None]
+
+
+def environment(**more: str) -> dict[str, str]:
+    """This checkout's, with some variables."""
+    return {**os.environ, "PYTHONPATH": PYTHONPATH, "OMP_NUM_THREADS": "1", **more}
+
+
+def unread(*words: str, errors: bool = False) -> subprocess.CompletedProcess[str]:
+    """A command whose output nobody reads, from the first byte on; with `errors` its standard error neither."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        return subprocess.run(
+            [*EVOLVENT, *words], cwd=ROOT, env=environment(), stdout=writer, stderr=writer if errors else subprocess.PIPE,
+            text=True, timeout=300, check=False,
+        )  # fmt: skip
+    finally:
+        os.close(writer)
+
+
+@pytest.mark.parametrize(
+    ("words", "errors"),
+    [
+        (("--help",), False),
+        (("--version",), False),
+        (("check", "demos/he2022.toml"), False),
+        (("info",), False),
+        (("check", "nowhere.toml"), True),
+        (("walk",), True),
+    ],
+)
+def test_output_that_nobody_reads(words: tuple[str, ...], errors: bool) -> None:
+    """As after `| head`: the status of a program that SIGPIPE ends, and not a word."""
+    done = unread(*words, errors=errors)
+    assert done.returncode == 128 + signal.SIGPIPE
+    assert not done.stderr
+
+
+def test_run_that_nobody_reads(tmp_path: Path) -> None:
+    """The first warning of a run meets a closed pipe: it ends quietly, and its log says why."""
+    settings = ("--set=sweep.positions=2", "--set=output.error_bars=false", "--set=output.pictures=false")
+    out = tmp_path / "out"
+    done = unread("run", "demos/he2022.toml", "--level=quick", "--out", str(out), *settings, errors=True)
+    assert done.returncode == 128 + signal.SIGPIPE
+    assert "failed: [Errno 32] Broken pipe" in (out / "run.log").read_text(encoding="utf-8")
+
+
+def test_output_that_cannot_be_written() -> None:
+    """A full disk behind the standard output: one line, status 1."""
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(
+            [*EVOLVENT, "check", "demos/he2022.toml"], cwd=ROOT, env=environment(), stdout=full, stderr=subprocess.PIPE,
+            text=True, timeout=120, check=False,
+        )  # fmt: skip
+    assert (done.returncode, done.stderr) == (1, "evolvent: [Errno 28] No space left on device\n")
+
+
+def test_status_of_printed_output(capfd: pytest.CaptureFixture[str]) -> None:
+    """What was read to its end leaves the status as it is."""
+    assert flushed(Exit.BAD_INPUT) == Exit.BAD_INPUT
+    assert capfd.readouterr() == ("", "")
+
+
+SLOW_IMPORT = """
+import os, signal, sys
+class Slow:
+    def find_spec(self, name, path=None, target=None):
+        if name == {at!r}:
+            try:
+                signal.raise_signal(signal.SIGINT)
+            except BaseException:
+                raise ImportError("numpy.core.multiarray failed to import")
+sys.meta_path.insert(0, Slow())
+sys.argv[0] = "evolvent"
+from evolvent.__main__ import main
+sys.exit(main())
+"""
+
+
+@pytest.mark.parametrize("at", ["evolvent.cli", "typer", "numpy"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_interrupted_before_it_began(command: str, at: str) -> None:
+    """SIGINT while modules are imported, of which one turns every exception into another: one line, status 130."""
+    words = [sys.executable, "-c", SLOW_IMPORT.format(at=at), command, "demos/he2022.toml"]
+    done = subprocess.run(words, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == "evolvent: stopped by SIGINT before it began\n"
+
+
+def test_interrupt_that_is_ignored_stays_so() -> None:
+    """In the background of a script, or under nohup, SIGINT is ignored: the command is not stopped by it."""
+    words = ["sh", "-c", "trap '' INT; exec \"$@\"", "sh", sys.executable, "-c", SLOW_IMPORT.format(at="typer"), "--version"]
+    done = subprocess.run(words, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_the_installed_program_is_the_interruptible_one() -> None:
+    """`evolvent` of the package's list of programs."""
+    assert 'evolvent = "evolvent.__main__:main"' in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+
+
+LATIN = os.fsencode("gr") + b"\xf6\xdf" + b"e"
+
+
+@pytest.mark.parametrize("command", ["check", "mesh", "info", "run"])
+def test_names_that_are_no_utf8(command: str, tmp_path: Path) -> None:
+    """A folder named in Latin-1, as the place of the scene and of what is written."""
+    folder = os.path.join(os.fsencode(tmp_path), LATIN)
+    os.mkdir(folder)
+    scene = os.path.join(folder, b"s.toml")
+    with open(scene, "w", encoding="utf-8") as stream:
+        stream.write(HE)
+    cheap = [b"--level", b"quick", b"--set=sweep.positions=2", b"--set=output.error_bars=false"]
+    words = {
+        "check": [scene, b"--out", os.path.join(folder, b"form.png")],
+        "mesh": [scene, b"--out", os.path.join(folder, b"m.msh"), b"--level", b"quick"],
+        "info": [],
+        "run": [scene, b"--out", os.path.join(folder, b"out"), b"--set=output.pictures=false", *cheap],
+    }[command]
+    done = subprocess.run(
+        [*EVOLVENT, command.encode(), *words], cwd=ROOT, env=environment(), capture_output=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert b"Traceback" not in done.stderr
+
+
+def test_check_needs_no_mpi() -> None:
+    """`check` in a process of its own starts no MPI, so that a temporary folder that cannot be written is none of its
+    business; a command that computes says so in one line, with status 2."""
+    variables = environment(TMPDIR=NOWHERE)
+    program = "import sys; from evolvent.cli import main; main(sys.argv[1:]); assert 'mpi4py.MPI' not in sys.modules"
+    for words in ([sys.executable, "-c", program, "check", "demos/he2022.toml"], [*EVOLVENT, "check", "demos/he2022.toml"]):
+        done = subprocess.run(words, cwd=ROOT, env=variables, capture_output=True, text=True, timeout=120, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+    words = [*EVOLVENT, "run", "demos/he2022.toml", "--out", NOWHERE]
+    done = subprocess.run(words, cwd=ROOT, env=variables, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
+    assert done.stderr.startswith(f"evolvent: TMPDIR: found {NOWHERE}, where MPI cannot keep its files")
+
+
+def test_command_line_in_this_process(capsys: pytest.CaptureFixture[str]) -> None:
+    """`main` may be called by a program, whose handlers of signals stay as they are."""
+    before = signal.getsignal(signal.SIGINT)
+    assert main(["--version"]) == Exit.DONE
+    assert signal.getsignal(signal.SIGINT) is before
+    assert capsys.readouterr().out

@@ -176,7 +176,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "run.study.plan", "run.study.results", "run.study.figures",
     ),
     "cli": (
-        "meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "results.drawing", "wear",
+        "meshes", "meshes.mesh", "fem.backend", "fem.parallel", "gears.meshing", "scene.*", "results.tables",
+        "results.drawing", "wear",
         "run.*",
     ),
 }  # fmt: skip

@@ -78,10 +78,10 @@ def times_written(out: Path) -> list[int]:
 
 
 @contextmanager
-def scheduler(tmp_path: Path) -> Iterator[str]:
-    """A Dask scheduler of its own, and its address."""
+def scheduler(tmp_path: Path, *more: str) -> Iterator[str]:
+    """A Dask scheduler of its own, and its address. more: options."""
     file = tmp_path / "scheduler.json"
-    options = ["--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file)]
+    options = ["--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file), *more]
     with started([sys.executable, "-m", "dask", "scheduler", *options]):
         until(lambda: file.exists() and file.read_text().endswith("}"), say="the scheduler")
         yield file.read_text().partition('"address": "')[2].partition('"')[0]

@@ -83,9 +83,9 @@ def study(
                 return closing(LocalWorkers(at_once))
             from evolvent.run.study.scheduled_workers import scheduled_workers  # Dask takes a second to import
 
-            return scheduled_workers(scheduler, out.resolve())
+            return scheduled_workers(scheduler, out.absolute())
 
-        for sentence in run_study(planned, out.resolve(), computing, 0 if force else at_once, overwrite, quiet):
+        for sentence in run_study(planned, out.absolute(), computing, 0 if force else at_once, overwrite, quiet):
             typer.echo(f"evolvent: warning: {sentence}", err=True)
         if not quiet:
             typer.echo(f"done: {out / 'study.csv'}, a row for each of {len(planned.scenes)} scenes")

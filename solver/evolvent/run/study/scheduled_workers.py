@@ -23,6 +23,8 @@ from evolvent_meshes.errors import InputError
 
 PATIENCE = 15.0
 """Time in which a scheduler has to answer, and to have a worker [s]."""
+MOST_SHOWN = 200
+"""Largest number of characters of an address or a reason in a message."""
 MOST_WAITING = 1000
 """Largest number of tasks that are with the scheduler at once: each carries its scenes."""
 TOKEN = ".evolvent-study"
@@ -39,16 +41,17 @@ def scheduled_workers(address: str, out: Path) -> Iterator[ScheduledWorkers]:
     begin = time.monotonic()
     try:
         asyncio.run(_reached(address))  # a client that finds none would leave a traceback behind
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
     except Exception as error:  # each of Dask's protocols has its own, from a missing package to a refused certificate
-        waited, said = time.monotonic() - begin, str(error) or type(error).__name__
-        reason = said if waited < PATIENCE else f"no answer within {PATIENCE:g} s, {said}"
+        answer = "" if time.monotonic() - begin < PATIENCE else f"no answer within {PATIENCE:g} s: "
         raise InputError(
-            f"--scheduler: found {address!r}, which cannot be reached ({reason}); allowed: the address of a running "
-            "Dask scheduler; remedy: start `python -m dask scheduler` and `python -m dask worker ADDRESS --nworkers 2 "
-            "--nthreads 1`, and give the address that the scheduler prints, such as tcp://10.0.0.1:8786; for a tls:// "
-            "address name the certificates in Dask's configuration (docs/studies.md)"
+            f"--scheduler: found {address[:MOST_SHOWN]!r}, which cannot be reached "
+            f"({answer}{str(error)[:MOST_SHOWN] or type(error).__name__}); allowed: the address of a running Dask "
+            "scheduler, for tls:// with the certificates in Dask's configuration; remedy: start `python -m dask "
+            "scheduler` and `python -m dask worker ADDRESS --nworkers 2 --nthreads 1`, and give the address that the "
+            "scheduler prints, such as tcp://10.0.0.1:8786"
         ) from error
-    with contextlib.closing(Client(address, timeout=PATIENCE, set_as_default=False)) as client:
+    with contextlib.closing(client):
         _check_workers(client, address, out)
         yield ScheduledWorkers(client)
 

@@ -29,12 +29,14 @@ from evolvent.run.study.results.study_table import (
     TABLE,
     TableRow,
     figure_columns,
+    missing_figures,
     table_row,
     write_table,
 )
 from evolvent.run.study.scene_task import DONE, REFUSED, SceneTask
 from evolvent.run.study.task_groups import SceneWorkers
 from evolvent_meshes.errors import InputError, ResultError
+from evolvent_meshes.text_files import UnreadableText, read_text
 
 SCENES_STAGE = "scenes"
 INTERVAL = 10.0
@@ -95,7 +97,7 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
             progress.stage(OUTPUT)
             folder.remove(str(path.relative_to(out)) for path in out.glob(PICTURES))
             rows, columns = table.write(folder)
-            said = table.said()
+            said = [*table.said(), *missing_figures(rows, _named(study), out)]
             drawn = draw(study_pictures(_values(study, rows, columns)), folder)
         return [*said, *drawn.failures]
 
@@ -116,7 +118,7 @@ def _require_no_other(folder: RunFolder) -> None:
 def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
     """Raises FolderError where the folder has the table of another study, unless that is to be replaced."""
     path = folder.out / STUDY
-    if path.exists() and _names(path.read_text(encoding="utf-8")) != _names(study.content) and not overwrite:
+    if path.exists() and _kept_names(path) != _names(study.content) and not overwrite:
         raise FolderError(
             f"{folder.out}: found the table of another study, or of other values ({STUDY}); allowed: a folder "
             "without, or the same study; remedy: --overwrite replaces table and pictures, and computes no scene again "
@@ -126,9 +128,22 @@ def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
 
 def _names(content: str) -> object:
     """What a study's content says of its scenes; None where it cannot be read."""
-    with contextlib.suppress(ValueError, TypeError, KeyError):
+    with contextlib.suppress(ValueError, TypeError, KeyError, RecursionError):
         return json.loads(content)["names"]
     return None
+
+
+def _kept_names(path: Path) -> object:
+    """The same of a file; None where it cannot be read."""
+    with contextlib.suppress(UnreadableText):
+        return _names(read_text(path, "JSON", 1))
+    return None
+
+
+def _named(study: Study) -> list[Figure]:
+    """The figures that the study asks for by name: of those by default a scene may lack some."""
+    own = {each.name for each in study.file.figure}
+    return [each for each in study.figures if study.file.figures is not None or each.name in own]
 
 
 def _values(study: Study, rows: Sequence[TableRow], columns: Sequence[str]) -> StudyValues:

@@ -12,6 +12,7 @@ from pathlib import Path
 from evidence.checkout import ROOT
 from evidence.processes import environment
 
+WORKER = "evolvent.run.study.worker_process"
 PATIENCE = 300.0
 """Longest time that something is waited for [s]."""
 
@@ -40,19 +41,28 @@ def workers_of(parent: int) -> list[int]:
     for path in Path("/proc").glob("[0-9]*/stat"):
         try:
             own, words = int(path.parent.name), path.with_name("cmdline").read_text().split("\0")
-            if int(path.read_text().rpartition(")")[2].split()[1]) == parent and "spawn_main" in " ".join(words):
+            if int(path.read_text().rpartition(")")[2].split()[1]) == parent and WORKER in words:
                 found.append(own)
         except OSError:
             continue
     return found
 
 
-def until(holds: Callable[[], object], *, say: str) -> None:
+def runs(process: int) -> bool:
+    """Whether a process has not ended. In a container nobody may have taken note of its end: it is a zombie then."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state != "Z"
+
+
+def until(holds: Callable[[], object], *, say: str, patience: float = PATIENCE) -> None:
     """Waits until a call returns something true. Raises TimeoutError."""
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + patience
     while not holds():
         if time.monotonic() > end:
-            raise TimeoutError(f"waited {PATIENCE:g} s for {say}")
+            raise TimeoutError(f"waited {patience:g} s for {say}")
         time.sleep(0.05)
 
 
@@ -68,12 +78,11 @@ def times_written(out: Path) -> list[int]:
 
 
 @contextmanager
-def scheduler(tmp_path: Path) -> Iterator[str]:
-    """A Dask scheduler of its own, and its address."""
+def scheduler(tmp_path: Path, *more: str) -> Iterator[str]:
+    """A Dask scheduler of its own, and its address. more: options."""
     file = tmp_path / "scheduler.json"
-    code = "from distributed.cli.dask_scheduler import main; main()"
-    options = ["--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file)]
-    with started([sys.executable, "-c", code, *options]):
+    options = ["--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file), *more]
+    with started([sys.executable, "-m", "dask", "scheduler", *options]):
         until(lambda: file.exists() and file.read_text().endswith("}"), say="the scheduler")
         yield file.read_text().partition('"address": "')[2].partition('"')[0]
 
@@ -81,7 +90,6 @@ def scheduler(tmp_path: Path) -> Iterator[str]:
 @contextmanager
 def worker(address: str, tmp_path: Path, threads: int = 1) -> Iterator[subprocess.Popen[str]]:
     """A worker of a scheduler."""
-    code = "from distributed.cli.dask_worker import main; main()"
     options = ["--nthreads", str(threads), "--no-dashboard", "--no-nanny", "--local-directory", str(tmp_path)]
-    with started([sys.executable, "-c", code, address, *options]) as program:
+    with started([sys.executable, "-m", "dask", "worker", address, *options]) as program:
         yield program

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 import re
 from pathlib import Path
 from typing import Annotated, Any, cast
@@ -13,6 +14,8 @@ from evolvent import __version__
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.output import SKIP_NAMES
 
+MOST_DIGITS, MOST_SHOWN = 9, 40
+"""Digits of a number of worker processes; characters of one that is none in a message."""
 MOST_PERCENT = 1000.0
 """Largest part of a scene's torque in a load list."""
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
@@ -88,6 +91,16 @@ def given_number(text: str) -> float:
         return float(text)
     except ValueError:
         raise typer.BadParameter(f"{shown(text)}, no number") from None
+
+
+def given_count(text: str) -> int:
+    """A number of worker processes from the command line. Raises typer.BadParameter."""
+    if text.isascii() and text.isdigit() and len(text) <= MOST_DIGITS and int(text) > 0:
+        return int(text)
+    cores = len(os.sched_getaffinity(0))
+    raise typer.BadParameter(
+        f"--workers: found {text[:MOST_SHOWN]}; allowed: a whole number from 1 on; remedy: write --workers {cores}"
+    )
 
 
 def given_percents(text: str) -> tuple[float, ...]:

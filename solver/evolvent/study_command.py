@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from functools import partial
+from contextlib import AbstractContextManager, closing
 from pathlib import Path
 from typing import Annotated
 
@@ -11,9 +11,13 @@ import typer
 
 from evolvent.failures import STATUSES, reported
 from evolvent.fem.parallel.mpi_start import world
-from evolvent.options import Force, LevelOption, Overrides, Quiet, given_path
+from evolvent.options import Force, LevelOption, Overrides, Quiet, given_count, given_path
 from evolvent.scene_argument import require, with_level
 
+MOST_PER_CORE = 4
+"""Largest number of worker processes for each core."""
+MEGABYTES = 250.0
+"""Memory of a worker process that computes nothing: what it has imported."""
 STUDY_EPILOG = f"""\b
 Examples:
   evolvent study demos/studies/zhang2023_torque.toml --out out/torque --workers 2
@@ -34,7 +38,9 @@ def study(
         Path, typer.Option("--out", metavar="DIR", help="Where table, pictures and scenes go.", parser=given_path)
     ],
     workers: Annotated[
-        int | None, typer.Option("--workers", metavar="N", help="Worker processes on this machine; one by default.")
+        int | None,
+        typer.Option("--workers", metavar="N", help="Worker processes on this machine; one by default.",
+                     parser=given_count),
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Use the workers of a running Dask scheduler.")
@@ -46,7 +52,7 @@ def study(
         bool, typer.Option("--overwrite", help="Replace the table of another study in DIR; its scenes stay.")
     ] = False,
     quiet: Quiet = False,
-) -> None:
+) -> None:  # fmt: skip
     """Compute many scenes.
 
     Parameters vary as a grid, side by side, or as a Latin hypercube; one table and pictures gather the figures. Scenes
@@ -57,24 +63,40 @@ def study(
         require(world().size == 1, ranks)
         both = "--workers: found --scheduler, too; allowed: one of them; remedy: a scheduler has its own workers"
         require(workers is None or scheduler is None, both)
-        cores = len(os.sched_getaffinity(0))
-        few = f"--workers: found {workers}; allowed: a whole number from 1 on; remedy: write --workers {cores}"
-        require(workers is None or workers >= 1, few)
+        if workers is not None and not force:
+            _require_room(workers)
         from evolvent.fem.backend.dolfinx_compat import versions
+        from evolvent.run.study.local_workers import LocalWorkers
         from evolvent.run.study.plan.study_file import load_study
         from evolvent.run.study.plan.study_scenes import study_scenes
         from evolvent.run.study.results.figures import gathered_figures
         from evolvent.run.study.study_run import Study, run_study
-        from evolvent.run.study.workers import local_workers, scheduled_workers
+        from evolvent.run.study.task_groups import SceneWorkers
 
-        loaded, count = load_study(file), workers or 1
+        loaded = load_study(file)
         figures, overrides = gathered_figures(loaded, str(file)), with_level(settings, level)
         planned = Study(loaded, study_scenes(loaded, file, overrides, versions()["evolvent"]), figures)
-        if scheduler is not None:
-            at_once, context = 1, partial(scheduled_workers, scheduler, out.resolve())
-        else:
-            at_once, context = count, partial(local_workers, count)
-        for sentence in run_study(planned, out.resolve(), context, 0 if force else at_once, overwrite, quiet):
+        at_once = min(workers or 1, len(planned.scenes))
+
+        def computing() -> AbstractContextManager[SceneWorkers]:
+            if scheduler is None:
+                return closing(LocalWorkers(at_once))
+            from evolvent.run.study.scheduled_workers import scheduled_workers  # Dask takes a second to import
+
+            return scheduled_workers(scheduler, out.absolute())
+
+        for sentence in run_study(planned, out.absolute(), computing, 0 if force else at_once, overwrite, quiet):
             typer.echo(f"evolvent: warning: {sentence}", err=True)
         if not quiet:
             typer.echo(f"done: {out / 'study.csv'}, a row for each of {len(planned.scenes)} scenes")
+
+
+def _require_room(workers: int) -> None:
+    """Raises a usage error where so many worker processes are far beyond this machine's cores, or its memory."""
+    from evolvent.fem.parallel.machine import machine_megabytes
+
+    cores, memory = len(os.sched_getaffinity(0)), machine_megabytes()
+    most = max(1, min(MOST_PER_CORE * cores, int(memory / MEGABYTES)))
+    allowed = f"up to {most}, for {cores} cores and {memory / 1e3:.3g} GB of memory"
+    many = f"--workers: found {workers}; allowed: {allowed}; remedy: write --workers {min(cores, most)}, or add --force"
+    require(workers <= most, many)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
+import socket
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,7 @@ from evidence.processes import environment
 from evidence.robustness.study_programs import (
     PATIENCE,
     records,
+    runs,
     scheduler,
     started,
     times_written,
@@ -31,15 +35,6 @@ SLOW = (
 )
 """Three scenes in plane strain, a second or two each, on the same gears."""
 CODE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
-
-
-def runs(process: int) -> bool:
-    """Whether a process has not ended. In a container nobody may have taken note of its end: it is a zombie then."""
-    try:
-        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-    return state != "Z"
 
 
 @pytest.mark.slow
@@ -99,11 +94,70 @@ def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: Run) -> None
     with scheduler(tmp_path) as address:
         done = run_script("-c", CODE, *arguments, address)
         assert done.returncode == 2
-        assert "without workers; allowed: one with workers; remedy: start some with `dask worker tcp://" in done.stderr
+        assert "without workers; allowed: one with workers; remedy: start some with `python -m dask" in done.stderr
         with worker(address, tmp_path, threads=2):
             done = run_script("-c", CODE, *arguments, address)
     assert done.returncode == 2 and "with 2 threads; allowed: one thread a worker" in done.stderr
     assert not (tmp_path / "out/study.csv").exists()
+
+
+@pytest.mark.slow
+def test_a_scheduler_with_certificates(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_script: Run) -> None:
+    """Scheduler, worker and study with certificates of one authority by Dask's own configuration: all scenes are done.
+    A study without is refused."""
+    study, certificate, key = written(tmp_path, TORQUES), tmp_path / "certificate.pem", tmp_path / "key.pem"
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=study", "-days", "2",
+         "-out", str(certificate), "-keyout", str(key)], check=True, capture_output=True,
+    )  # fmt: skip
+    out, arguments = tmp_path / "out", ["study", str(study), "--quiet", "--out", str(tmp_path / "out"), "--scheduler"]
+    with monkeypatch.context() as configured:
+        configured.setenv("DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION", "True")
+        configured.setenv("DASK_DISTRIBUTED__COMM__TLS__CA_FILE", str(certificate))
+        for role in ("SCHEDULER", "WORKER", "CLIENT"):
+            configured.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{role}__CERT", str(certificate))
+            configured.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{role}__KEY", str(key))
+        with scheduler(tmp_path, "--protocol", "tls") as address, worker(address, tmp_path):
+            assert address.startswith("tls://")
+            done = run_script("-c", CODE, *arguments, address)
+            assert done.returncode == 0, done.stderr
+            with monkeypatch.context() as stranger:
+                for name in [name for name in os.environ if name.startswith("DASK_")]:
+                    stranger.delenv(name)
+                refused = run_script("-c", CODE, *arguments[:-2], str(tmp_path / "other"), "--scheduler", address)
+    assert {row["status"] for row in table(out)} == {"done"}
+    assert refused.returncode == 2 and "which cannot be reached (TLS expects" in refused.stderr
+    assert not (tmp_path / "other").exists()
+
+
+@pytest.mark.slow
+def test_commands_of_the_page(tmp_path: Path) -> None:
+    """Scheduler, worker and study as docs/studies.md has them, in the environment's folder of programs, with another
+    address and a smaller study: all scenes are done."""
+    page = (ROOT / "docs/studies.md").read_text(encoding="utf-8")
+    text = page.partition("<!-- begin scheduler -->")[2].partition("```sh\n")[2].partition("```")[0]
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+    small = {"10.0.0.1": "127.0.0.1", "8786": str(port), "demos/studies/zhang2023_torque.toml":
+             str(written(tmp_path, TORQUES)), "out/torque": str(tmp_path / "out")}  # fmt: skip
+    for old, new in small.items():
+        assert old in text
+        text = text.replace(old, new)
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    scheduling, working, studying = (["env", f"PATH={path}", "bash", "-c", f"exec env {line}"]
+                                     for line in text.splitlines())  # fmt: skip
+
+    def answers() -> bool:
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port)):
+            return True
+        return False
+
+    with started(scheduling):
+        until(answers, say="the scheduler")
+        with started(working), started(studying) as program:
+            said, errors = program.communicate(timeout=PATIENCE)
+            assert program.returncode == 0, said + errors
+    assert {row["status"] for row in table(tmp_path / "out")} == {"done"}
 
 
 @pytest.mark.parametrize(
@@ -111,19 +165,22 @@ def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: Run) -> None
     [
         (("--workers", "0"), "--workers: found 0; allowed: a whole number from 1 on; remedy: write --workers"),
         (("--workers", "2", "--scheduler", "tcp://127.0.0.1:9"), "--workers: found --scheduler, too; allowed: one of"),
-        (("--workers", "two"), "--workers: found"),
-        (("--scheduler", "nowhere"), "--scheduler: found 'nowhere', which does not answer"),
-        (("--scheduler", "tcp://127.0.0.1:9"), "--scheduler: found 'tcp://127.0.0.1:9', which does not answer"),
+        (("--workers", "two"), "--workers: found two; allowed: a whole number from 1 on; remedy: write --workers"),
+        (("--workers", "100000"), "--workers: found 100000; allowed: up to "),
+        (("--scheduler", "nowhere"), "--scheduler: found 'nowhere', which cannot be reached (missing port number"),
+        (("--scheduler", "tcp://127.0.0.1:9"), "--scheduler: found 'tcp://127.0.0.1:9', which cannot be reached (no"),
+        (("--scheduler", "tls://127.0.0.1:9"), "which cannot be reached (TLS expects a"),
+        (("--scheduler", "ucx://127.0.0.1:9"), "--scheduler: found 'ucx://127.0.0.1:9', which cannot be reached ("),
         (("--set", "load.torque_Nm"), "--set: found"),
     ],
 )
 def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...], said: str) -> None:
-    """Status 2, one line, nothing computed."""
+    """Status 2, one line, nothing computed, and no folder left."""
     study, out = written(tmp_path, TORQUES), tmp_path / "out"
     done = run_script("-c", CODE, "study", str(study), "--out", str(out), "--quiet", *options)
     assert done.returncode == 2
     assert done.stderr.startswith("evolvent: ") and said in done.stderr and "Traceback" not in done.stderr
-    assert not list(out.glob("scenes/*"))
+    assert not out.exists()
 
 
 def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: Run) -> None:

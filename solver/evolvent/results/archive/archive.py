@@ -13,7 +13,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -182,7 +181,7 @@ def read_arrays(path: Path) -> dict[str, Any]:
     try:
         with open_file(path) as file, np.load(file, allow_pickle=False) as archive:
             return {name.replace("|", "/"): archive[name] for name in archive.files}
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+    except Exception as error:  # NumPy and zipfile raise whatever the bytes of another file lead them to
         remedy = "move or remove it, then compute" if path.exists() else "compute"
         raise ArchiveError(
             f"{path}: wanted a results file, found none that can be read ({error}); {remedy} anew with `evolvent run "

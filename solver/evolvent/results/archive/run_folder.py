@@ -27,6 +27,8 @@ WORN = "worn_*"
 """Folders of worn pairs, each with its own manifest."""
 FOLDERS = (".", "results", "fields", "pictures")
 """Folders in which a run writes. Others are not searched: OUT may be a home directory with a million files."""
+LONGEST = 200
+"""Length that no name of a file of a run reaches [characters]."""
 NAMED = 5
 """Largest number of files named in a message."""
 
@@ -158,9 +160,9 @@ class RunFolder:
         """Name -> SHA-256 of every content written under it, in the order of the last writing. Raises FolderError."""
         digests: dict[str, set[str]] = {}
         for line in self._lines():
-            with contextlib.suppress(ValueError, KeyError, TypeError):  # an incomplete line of a killed run
+            with contextlib.suppress(ValueError, KeyError, TypeError, RecursionError):  # a killed run left a part
                 entry = json.loads(line)
-                if ".." not in Path(entry["path"]).parts:
+                if _is_below(entry["path"]):
                     digests[entry["path"]] = digests.pop(entry["path"], set()) | {entry["sha256"]}
         return digests
 
@@ -191,11 +193,22 @@ class RunFolder:
         """Adds a file to the manifest, before it is written: a listed file that is missing does no harm. Raises
         WriteError."""
         line, manifest = _entry(self._name(path), digest), self.out / MANIFEST
+        if manifest.is_symlink():
+            raise FolderError(
+                f"{manifest}: found a link to {manifest.readlink()}; wanted the list of what runs have made here, or "
+                "no file; move or remove it, or name another folder with --out"
+            )
         try:
             manifest.parent.mkdir(parents=True, exist_ok=True)
             _append(manifest, line)
         except OSError as error:
             raise write_error(manifest, len(line), error) from error
+
+
+def _is_below(name: str) -> bool:
+    """Whether a name is that of a file below the folder, as a run writes it."""
+    path = Path(name)
+    return not path.is_absolute() and ".." not in path.parts and all(len(part) < LONGEST for part in path.parts)
 
 
 def _entry(name: str, digest: str) -> bytes:

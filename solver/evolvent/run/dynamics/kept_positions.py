@@ -49,7 +49,14 @@ class KeptPositions:
                 "(what follows on the excitation may differ); --resume goes on with the scene and the torques that it "
                 "was called with, --out names another folder, --overwrite computes anew"
             )
-        return {int(number): figures for number, figures in zip(arrays["numbers"], arrays["figures"])}
+        numbers, figures = arrays.get("numbers", np.zeros(0)), arrays.get("figures", np.zeros(0))
+        fits = figures.shape == (*numbers.shape, *figures.shape[1:2], 2)
+        if numbers.dtype.kind != "i" or figures.dtype.kind != "f" or not fits:
+            raise ArchiveError(
+                f"{path}: wanted numbers of positions with their figures, found other arrays; move or remove it, then "
+                "call again"
+            )
+        return {int(number): each for number, each in zip(numbers, figures)}
 
     def write(self, found: Mapping[int, Floats]) -> None:
         """Keeps positions, see `read`. Raises WriteError, FolderError."""

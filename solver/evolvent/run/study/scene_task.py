@@ -12,6 +12,7 @@ from mpi4py import MPI
 
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.load_list import LoadList
+from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
 from evolvent.run.dynamics.excitation import run_excitation
@@ -72,7 +73,7 @@ def solve(task: SceneTask, gears: LoadList | None = None) -> SceneRecord:
         warnings = COMPUTING[task.compute](task, prepare_model if gears is None else gears.prepare)
     except EvolventError as error:
         reason = str(error)
-        lasting = isinstance(error, (InputError, ResultError)) and not isinstance(error, FolderError)
+        lasting = isinstance(error, (InputError, ResultError)) and not isinstance(error, (FolderError, ArchiveError))
     except (OSError, MemoryError) as error:
         reason, lasting = str(error) or type(error).__name__, False
     record = SceneRecord(

@@ -8,11 +8,9 @@ import json
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-
-from distributed import Client
 
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
@@ -31,18 +29,20 @@ from evolvent.run.study.results.study_table import (
     TABLE,
     TableRow,
     figure_columns,
+    missing_figures,
     table_row,
     write_table,
 )
 from evolvent.run.study.scene_task import DONE, REFUSED, SceneTask
-from evolvent.run.study.submission import finished
+from evolvent.run.study.task_groups import SceneWorkers
 from evolvent_meshes.errors import InputError, ResultError
+from evolvent_meshes.text_files import UnreadableText, read_text
 
 SCENES_STAGE = "scenes"
 INTERVAL = 10.0
 """Time after which the table is written again while scenes are computed [s]."""
 PICTURES = "pictures/*.png"
-Workers = Callable[[], AbstractContextManager[Client]]
+Workers = Callable[[], AbstractContextManager[SceneWorkers]]
 
 
 class NothingComputed(ResultError):
@@ -79,7 +79,7 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
     """
     with locked(out):
         folder = RunFolder(out)
-        folder.require_free([TABLE, PARQUET, STUDY, PICTURES])
+        folder.require_free([TABLE, PARQUET, STUDY])
         _require_no_other(folder)
         _require_same(study, folder, overwrite)
         records = {each.name: record for each in study.scenes if (record := _known(each, out)) is not None}
@@ -87,17 +87,17 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
         with Progress(hidden=quiet) as progress:
             progress.stage(SCENES_STAGE, len(study.scenes), table.done)
             missing = table.missing(at_once)
-            if missing:
-                with workers() as client:
-                    table.write(folder)
-                    for record in finished(client, missing):
-                        table.add(record)
-                        progress.reach(table.done)
-                        table.write_now_and_then(folder)
+            with workers() if missing else nullcontext() as computing:
+                folder.write_text(STUDY, study.content)  # before the table: no other study replaces that unasked
+                table.write(folder)
+                for record in computing.finished(missing) if computing is not None else ():
+                    table.add(record)
+                    progress.reach(table.done)
+                    table.write_now_and_then(folder)
             progress.stage(OUTPUT)
             folder.remove(str(path.relative_to(out)) for path in out.glob(PICTURES))
             rows, columns = table.write(folder)
-            said = table.said()
+            said = [*table.said(), *missing_figures(rows, _named(study), out)]
             drawn = draw(study_pictures(_values(study, rows, columns)), folder)
         return [*said, *drawn.failures]
 
@@ -116,23 +116,34 @@ def _require_no_other(folder: RunFolder) -> None:
 
 
 def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
-    """Notes what the table is of, before it is written: so another study does not replace it unasked. Raises
-    FolderError where the folder has the table of another study."""
+    """Raises FolderError where the folder has the table of another study, unless that is to be replaced."""
     path = folder.out / STUDY
-    if path.exists() and _names(path.read_text(encoding="utf-8")) != _names(study.content) and not overwrite:
+    if path.exists() and _kept_names(path) != _names(study.content) and not overwrite:
         raise FolderError(
             f"{folder.out}: found the table of another study, or of other values ({STUDY}); allowed: a folder "
             "without, or the same study; remedy: --overwrite replaces table and pictures, and computes no scene again "
             "that both have; --out names another folder"
         )
-    folder.write_text(STUDY, study.content)
 
 
 def _names(content: str) -> object:
     """What a study's content says of its scenes; None where it cannot be read."""
-    with contextlib.suppress(ValueError, TypeError, KeyError):
+    with contextlib.suppress(ValueError, TypeError, KeyError, RecursionError):
         return json.loads(content)["names"]
     return None
+
+
+def _kept_names(path: Path) -> object:
+    """The same of a file; None where it cannot be read."""
+    with contextlib.suppress(UnreadableText):
+        return _names(read_text(path, "JSON", 1))
+    return None
+
+
+def _named(study: Study) -> list[Figure]:
+    """The figures that the study asks for by name: of those by default a scene may lack some."""
+    own = {each.name for each in study.file.figure}
+    return [each for each in study.figures if study.file.figures is not None or each.name in own]
 
 
 def _values(study: Study, rows: Sequence[TableRow], columns: Sequence[str]) -> StudyValues:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
-from evolvent.run.study import study_run
 from evolvent.run.study.results.scene_record import SceneRecord
 from evolvent.run.study.scene_task import SceneTask, solve
 from evolvent.run.study.study_run import NothingComputed, run_study
@@ -22,30 +20,32 @@ from tests.support.running.study_cases import HEAD, TORQUES, study_of, table
 FAILING = f"{HEAD}[grid]\nload.torque_Nm = [-1.0, 100.0]\n"
 
 
-@contextmanager
-def nobody() -> Iterator[None]:
+class Here:
     """In place of worker processes."""
-    yield None
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    def finished(self, tasks: Mapping[SceneTask, str]) -> Iterator[SceneRecord]:
+        """Computes scenes in this process, and notes their names."""
+        for task in tasks:
+            self.names.append(task.name)
+            yield solve(task)
+
+
+HERE = Here()
 
 
 @pytest.fixture
-def computed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def computed() -> list[str]:
     """Names of the scenes that are computed, in this process."""
-    names: list[str] = []
-
-    def here(_: object, tasks: dict[SceneTask, str]) -> Iterator[SceneRecord]:
-        for task in tasks:
-            names.append(task.name)
-            yield solve(task)
-
-    monkeypatch.setattr(study_run, "finished", here)
-    return names
+    HERE.names = []
+    return HERE.names
 
 
 def run(folder: Path, text: str = TORQUES, overwrite: bool = False) -> list[str]:
     """A study into folder/out."""
-    workers: Callable[[], Any] = nobody
-    return run_study(study_of(folder, text), folder / "out", workers, 1, overwrite, quiet=True)
+    return run_study(study_of(folder, text), folder / "out", lambda: nullcontext(HERE), 1, overwrite, quiet=True)
 
 
 def test_table_has_a_row_a_scene(tmp_path: Path, computed: list[str]) -> None:
@@ -83,7 +83,7 @@ def test_the_table_is_there_from_the_start(tmp_path: Path, monkeypatch: pytest.M
         raise KeyboardInterrupt
         yield
 
-    monkeypatch.setattr(study_run, "finished", stopped)
+    monkeypatch.setattr(Here, "finished", stopped)
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path, FAILING)
     assert [row["status"] for row in table(tmp_path / "out")] == ["refused", "waiting"]

@@ -90,8 +90,9 @@ class FigureSection(SceneSection):
         pattern=r"^[A-Za-z]\w{0,79}$",
     )
     file: str = key(
-        "file in the folder of a scene that has it", "the name of a CSV or JSON file, docs/outputs.md",
-        pattern=r"^[\w./-]+\.(csv|json)$",
+        "file in the folder of a scene that has it",
+        "the name of a CSV or JSON file in it, or in a folder below it, docs/outputs.md",
+        pattern=r"^([\w-][\w.-]*/)*[\w-][\w.-]*\.(csv|json)$",
     )  # fmt: skip
     column: str = key("column of the CSV file, or key of the JSON file, dotted where it lies deeper",
                       "a text, docs/outputs.md", min_length=1)  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 
 from evolvent.dynamics.results.curves import LOADED, SECANT, TANGENT
@@ -12,6 +12,7 @@ from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.run.study.plan.study_file import Computation, StudyFile
 from evolvent.run.study.results.check_figures import CHECK, CheckFigures
 from evolvent.run.study.results.gathering import ERROR, Figure
+from evolvent.run.study.results.study_table import OWN
 from evolvent.scene.schema.errors import InputProblem, SceneError
 from evolvent.scene.schema.guesses.nearest_key import nearest_key
 from evolvent.strength.results.tables import COMPRESSION, STANDARD, STRENGTH, TENSION
@@ -111,6 +112,7 @@ def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
     source: path of the study file. Raises SceneError where a name is unknown or stands for two.
     """
     own = [Figure(**each.model_dump()) for each in study.figure]
+    _require_own_columns(own, study, source)
     known = {each.name: each for each in [*CATALOGUE[study.compute], *own]}
     names = study.figures or (*DEFAULTS[study.compute], *(each.name for each in own))
     for name in names:
@@ -123,3 +125,15 @@ def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
             remedy = "name each figure once, and other figures otherwise"
             raise SceneError([InputProblem("figures", f"{name!r} twice", "different names", remedy)], source)
     return [known[name] for name in names]
+
+
+def _require_own_columns(own: Sequence[Figure], study: StudyFile, source: str) -> None:
+    """Raises SceneError where a figure of one's own has the name of another column of the table."""
+    parameters = [key for keys in study.parts().values() for key in keys]
+    errors = [f"{each.name}{ERROR}" for each in CATALOGUE[study.compute] if each.error]
+    for number, figure in enumerate(own):
+        if figure.name in (*OWN, *parameters, *errors):
+            allowed = f"a name of its own: the table has {', '.join(OWN)}, parameters and error bars"
+            problem = InputProblem(f"figure[{number}].name", f"{figure.name!r}, another column of the table", allowed,
+                                   "name the figure otherwise")  # fmt: skip
+            raise SceneError([problem], source)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from evolvent_meshes.files import open_file
+from evolvent_meshes.text_files import UnreadableText, read_text
 
 ERROR = "_error"
 """Behind the name of a figure: its estimated error."""
@@ -21,6 +21,8 @@ STATISTICS: Mapping[str, Callable[[Sequence[float]], float]] = {
 }  # fmt: skip
 """What is taken of several rows."""
 ONLY = "only"
+MEGABYTES = 200
+"""Size of the largest table that is read [MB]."""
 Row = Mapping[str, Any]
 
 
@@ -64,6 +66,22 @@ class Gathering:
                     found[f"{figure.name}{ERROR}{behind}"] = _value(rows, figure.error, figure.statistic)
         return found
 
+    def why_missing(self, figure: Figure) -> str:
+        """Why a figure has no value here, for a reader; empty where its cell is left empty by the computation."""
+        read = self._rows(figure.file, figure.rows)
+        rows = [row for group in self._by_friction(figure).values() for row in group]
+        if not read:
+            place = f"a list {figure.rows!r}" if figure.rows else "rows"
+            return f"{figure.file} is not there, or has no {place}"
+        if not rows:
+            wanted = ", ".join(f"{name} = {value!r}" for name, value in figure.where.items())
+            return f"no row of {figure.file} has {wanted}"
+        if not any(_has(row, figure.column) for row in rows):
+            return f"{figure.file} has no {figure.column!r}"
+        if figure.statistic == ONLY and len(_numbers(rows, figure.column)) > 1:
+            return f"{figure.file} has several rows of it: name one by where, or take a statistic of them"
+        return ""
+
     def _by_friction(self, figure: Figure) -> dict[str, list[Row]]:
         """The rows of a figure; those of different friction coefficients apart. At least one group."""
         groups: dict[str, list[Row]] = {}
@@ -74,26 +92,24 @@ class Gathering:
 
     def _rows(self, file: str, rows: str) -> list[Row]:
         if (file, rows) not in self._tables:
-            self._tables[file, rows] = list(_read(self._folder / file, rows))
+            self._tables[file, rows] = list(_read(self._folder, file, rows))
         return self._tables[file, rows]
 
 
-def _read(path: Path, rows: str) -> Iterator[Row]:
-    """Rows of a table; none where it cannot be read."""
+def _read(folder: Path, name: str, rows: str) -> list[Row]:
+    """Rows of a table; none where it cannot be read, or lies behind a link elsewhere."""
+    path = folder / name
     try:
-        with open_file(path) as file:
-            text = file.read().decode("utf-8")
-    except (OSError, ValueError):
-        return
-    if path.suffix == ".csv":
-        yield from csv.DictReader(text.splitlines())
-        return
-    try:
+        if not path.resolve().is_relative_to(folder.resolve()):
+            return []
+        text = read_text(path, "table", MEGABYTES)
+        if path.suffix == ".csv":
+            return list(csv.DictReader(text.splitlines()))
         content = json.loads(text)
-    except ValueError:
-        return
+    except (UnreadableText, OSError, ValueError, csv.Error, RecursionError):
+        return []
     listed = _deep(content, rows) if rows else [content]
-    yield from (row for row in listed or [] if isinstance(row, Mapping))
+    return [row for row in listed if isinstance(row, Mapping)] if isinstance(listed, list) else []
 
 
 def _deep(row: Any, dotted: str) -> Any:
@@ -103,6 +119,13 @@ def _deep(row: Any, dotted: str) -> Any:
     for part in dotted.split("."):
         row = row.get(part) if isinstance(row, Mapping) else None
     return row
+
+
+def _has(row: Row, dotted: str) -> bool:
+    """Whether a row has a dotted key, with or without a value."""
+    *parents, last = dotted.split(".")
+    inner = _deep(row, ".".join(parents)) if parents else row
+    return dotted in row or (isinstance(inner, Mapping) and last in inner)
 
 
 def _friction(row: Row) -> str:
@@ -118,16 +141,22 @@ def _same(found: Any, wanted: str | int | float) -> bool:
 
 
 def _number(value: Any) -> float:
-    """NaN where the value is no number."""
+    """NaN where the value is no finite number."""
     try:
-        return float(value)
-    except (TypeError, ValueError):
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
         return math.nan
+    return number if math.isfinite(number) else math.nan
+
+
+def _numbers(rows: Sequence[Row], column: str) -> list[float]:
+    """Of the rows that have one."""
+    return [number for row in rows if not math.isnan(number := _number(_deep(row, column)))]
 
 
 def _value(rows: Sequence[Row], column: str, statistic: str) -> float:
     """NaN where no row has a number there, or several rows have where only one is wanted."""
-    numbers = [number for row in rows if not math.isnan(number := _number(_deep(row, column)))]
+    numbers = _numbers(rows, column)
     if not numbers or (statistic == ONLY and len(numbers) > 1):
         return math.nan
     return numbers[0] if statistic == ONLY else STATISTICS[statistic](numbers)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Literal
+
+from pydantic import TypeAdapter
 
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent_meshes.text_files import UnreadableText, read_text
@@ -22,7 +25,7 @@ class SceneRecord:
     """Of its content, and of its folder."""
     compute: str
     """What was computed."""
-    status: str
+    status: Literal["done", "failed", "refused"]
     """done, failed (the computation ended with an error), or refused (its values are no scene)."""
     reason: str
     """Why it failed or was refused; empty where it is done."""
@@ -30,6 +33,9 @@ class SceneRecord:
     """What a reader has to know, a sentence each."""
     seconds: float
     """Wall time of the computation."""
+
+
+VALID = TypeAdapter(SceneRecord)
 
 
 def scene_folder(out: Path, name: str) -> Path:
@@ -46,8 +52,7 @@ def write_record(folder: Path, record: SceneRecord) -> None:
 def read_record(folder: Path) -> SceneRecord | None:
     """None where the scene was not computed to the end, or its record cannot be read."""
     try:
-        values = json.loads(read_text(folder / RECORD, "JSON", 1))
-        record = SceneRecord(**{**values, "warnings": tuple(values["warnings"])})
-    except (UnreadableText, ValueError, TypeError, KeyError):
+        record = VALID.validate_json(read_text(folder / RECORD, "JSON", 1))
+    except (UnreadableText, ValueError):  # ValueError: pydantic's, of a record that was cut off, or is none
         return None
     return record if record.name == folder.name else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import io
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,8 @@ from evolvent.run.study.results.gathering import Figure, Gathering
 from evolvent.run.study.results.scene_record import SCENES, SceneRecord, scene_folder
 
 TABLE, PARQUET = "study.csv", "study.parquet"
+OWN = "status", "reason", "folder", "seconds"
+"""Columns behind the figures."""
 WAITING, DONE = "waiting", "done"
 WRITERS = "pandas", "pyarrow"
 """Packages that write Parquet; Debian has no pyarrow."""
@@ -42,7 +45,7 @@ class TableRow:
     def flat(self, figures: Sequence[str]) -> dict[str, object]:
         """As it is written. figures: columns of all rows."""
         values = {name: self.figures.get(name, float("nan")) for name in figures}
-        own = {"status": self.status, "reason": self.reason, "folder": self.folder, "seconds": self.seconds}
+        own = dict(zip(OWN, (self.status, self.reason, self.folder, self.seconds)))
         return {**{name: written(value) for name, value in self.parameters.items()}, **values, **own}
 
 
@@ -66,6 +69,22 @@ def figure_columns(rows: Sequence[TableRow], figures: Sequence[Figure]) -> list[
     """Columns of the figures, in the order in which they are gathered."""
     found = dict.fromkeys(name for row in rows for name in row.figures)
     return list(found) or [figure.name for figure in figures]
+
+
+def missing_figures(rows: Sequence[TableRow], figures: Sequence[Figure], out: Path) -> list[str]:
+    """A sentence on each figure that some scenes that are done do not have, with the reason in the first of them."""
+    found, done = [], [row for row in rows if row.status == DONE]
+    for figure in figures:
+        without = [row for row in done if all(map(math.isnan, _values(row, figure.name)))]
+        reason = Gathering(out / without[0].folder).why_missing(figure) if without else ""
+        if reason:
+            found.append(f"figure {figure.name}: no number in {len(without)} of {len(done)} scenes: {reason}")
+    return found
+
+
+def _values(row: TableRow, name: str) -> list[float]:
+    """Of a figure, at each friction coefficient."""
+    return [value for column, value in row.figures.items() if column.partition(" (")[0] == name]
 
 
 def write_table(folder: RunFolder, rows: Sequence[TableRow], columns: Sequence[str]) -> None:

@@ -1,0 +1,49 @@
+"""Which scenes of a study are computed together: on the same condensed gears, or as one task of one worker."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Protocol
+
+from evolvent.run.study.misalignment_line import line_name
+from evolvent.run.study.results.scene_record import SceneRecord, read_record
+from evolvent.run.study.scene_task import FAILED, SceneTask
+
+DEATHS = 3
+"""Largest number of deaths of a worker process at one scene: then the scene is given up."""
+Line = tuple[SceneTask, ...]
+"""Scenes that one task computes."""
+
+
+class SceneWorkers(Protocol):
+    """Processes that compute scenes."""
+
+    def finished(self, tasks: Mapping[SceneTask, str]) -> Iterator[SceneRecord]:
+        """Records of the scenes as they are computed, in any order. tasks: with the name of the gears that several
+        share; empty: a scene has its own."""
+
+
+def sharing(tasks: Mapping[SceneTask, str]) -> list[Line]:
+    """The tasks, those that share gears together."""
+    return _grouped(tasks, lambda task: tasks[task] or task.name)
+
+
+def lines(group: Iterable[SceneTask]) -> list[Line]:
+    """Tasks that share gears, those that are solved together in one line."""
+    return _grouped(group, line_name)
+
+
+def _grouped(tasks: Iterable[SceneTask], name: Callable[[SceneTask], str]) -> list[Line]:
+    """Those of one name together, in their order."""
+    groups: dict[str, list[SceneTask]] = {}
+    for task in tasks:
+        groups.setdefault(name(task), []).append(task)
+    return [tuple(group) for group in groups.values()]
+
+
+def failed(line: Line, reason: str) -> list[SceneRecord]:
+    """Records of scenes whose computation ended without any; those that were done before keep theirs."""
+    return [
+        read_record(task.folder) or SceneRecord(task.name, task.compute, FAILED, reason, (), float("nan"))
+        for task in line
+    ]

@@ -54,7 +54,8 @@ def read_msh(path: Path | str) -> MeshData:
     """Read a gmsh file (MSH 4.1 or 2.2): one cell shape of order 1 or 2, in named physical volumes, in 2D surfaces.
 
     Lengths are in mm. Named physical groups of facets become the mesh's facet groups. Elements of no physical group and
-    nodes of no cell are left out; plane surfaces that are numbered clockwise are turned over.
+    nodes of no cell are left out; plane surfaces that are numbered clockwise are turned over. Elements with the same
+    nodes are one: MSH 2.2 writes an element once for each of its groups.
 
     Raises MeshError for an unusable mesh, NoMeshFile where there is no file.
 
@@ -116,12 +117,14 @@ def from_gmsh() -> MeshData:
     shape, order = _single_type(volumes, dimension)
     facet_groups = {k: v for k, v in _groups(dimension - 1).items() if any(len(t) for t, _ in v.values())}
     _check_facets(facet_groups, (FACET_SHAPE[shape], order))
-    tags, cell_nodes, indices = _unique_cells({k: v[_TYPE_NUMBERS[shape, order]] for k, v in volumes.items()})
-    if not len(tags):
+    cell_nodes, indices = _unique_cells({k: v[_TYPE_NUMBERS[shape, order]] for k, v in volumes.items()})
+    if not len(cell_nodes):
         raise MeshError("gmsh model: wanted cells in the physical groups, found none; generate the mesh first")
     used, cells = np.unique(cell_nodes, return_inverse=True)
     facet_type = _TYPE_NUMBERS[FACET_SHAPE[shape], order]
-    facets = {name: _renumbered(used, group[facet_type][1], name) for name, group in facet_groups.items()}
+    facets = {
+        name: _renumbered(used, _each_once(group[facet_type][1]), name) for name, group in facet_groups.items()
+    }
     points = _points(used)
     if dimension == 2 and np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2]):
         raise MeshError(
@@ -199,11 +202,23 @@ def _check_facets(groups: dict[str, ElementGroup], wanted: tuple[str, int]) -> N
             )
 
 
-def _unique_cells(groups: dict[str, tuple[Ints, Ints]]) -> tuple[Ints, Ints, dict[str, Ints]]:
-    """Element tags, their nodes, and the indices of each group's cells; a cell may be in several groups."""
+def _unique_cells(groups: dict[str, tuple[Ints, Ints]]) -> tuple[Ints, dict[str, Ints]]:
+    """Nodes of the cells by ascending tag, and the indices of each group's cells; a cell may be in several groups."""
     tags, first = np.unique(np.concatenate([t for t, _ in groups.values()]), return_index=True)
     nodes = np.concatenate([n for _, n in groups.values()])[first]
-    return tags, nodes, {name: np.searchsorted(tags, t).astype(np.int64) for name, (t, _) in groups.items()}
+    kept, number = _distinct(nodes)
+    return nodes[kept], {name: np.unique(number[np.searchsorted(tags, t)]) for name, (t, _) in groups.items()}
+
+
+def _distinct(elements: Ints) -> tuple[Ints, Ints]:
+    """Indices of the different elements (n, nodes), in their order, and the number of each one among these (n,)."""
+    _, first, which = np.unique(np.sort(elements, axis=1), axis=0, return_index=True, return_inverse=True)
+    kept = np.sort(first)
+    return kept, np.searchsorted(kept, first[which.ravel()])
+
+
+def _each_once(elements: Ints) -> Ints:
+    return np.asarray(elements[_distinct(elements)[0]])
 
 
 def _renumbered(used: Ints, nodes: Ints, name: str) -> Ints:
@@ -272,9 +287,9 @@ def _distinct_facets(mesh: MeshData) -> tuple[Ints, dict[str, Ints]]:
     if not mesh.facets:
         return np.empty((0, 1), dtype=np.int64), {}
     every = np.concatenate(list(mesh.facets.values()))
-    _, first, number = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_inverse=True)
+    kept, number = _distinct(every)
     ends = np.cumsum([len(f) for f in mesh.facets.values()])[:-1]
-    return every[first], dict(zip(mesh.facets, np.split(number.ravel(), ends), strict=True))
+    return every[kept], dict(zip(mesh.facets, np.split(number, ends), strict=True))
 
 
 def _add_elements(

@@ -8,7 +8,9 @@ import pytest
 
 from evolvent_meshes.mesh.gmsh_io import from_gmsh, gmsh_model, read_msh, write_msh
 from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
+from evolvent_meshes.mesh.soundness import check_mesh
 from evolvent_meshes.shapes.blocks import box, rectangle
+from tests.support.meshes.overlapping_groups import write_overlapping
 
 BLOCKS = [
     rectangle(2, 1, 4, 3, order=2),
@@ -44,6 +46,26 @@ def test_overlapping_groups_are_written_and_read(tmp_path: Path) -> None:
     assert sorted(middles[:, 0]) == pytest.approx([0.75, 1.75])
     assert len(back.facets["outside"]) == 10
     assert len(back.facets["top"]) == 4
+
+
+@pytest.mark.parametrize("version", [4.1, 2.2])
+@pytest.mark.parametrize("order", [1, 2])
+def test_elements_of_two_groups_are_read_once(version: float, order: int, tmp_path: Path) -> None:
+    """Problem: MSH 2.2 writes an element once for each physical group of its entity; sides were read twice, and then
+    refused. A surface is in two groups, two of its sides as well. Exact: an area of 50 in each group of cells, lengths
+    of 10 and 30, in either version; no element twice."""
+    write_overlapping(tmp_path / "mesh.msh", version, order)
+    mesh = read_msh(tmp_path / "mesh.msh")
+    check_mesh(mesh, "overlap")
+    x, y = np.moveaxis(mesh.points[mesh.cells[:, :3], :2], -1, 0)
+    areas = 0.5 * np.abs((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0]))
+    assert {name: areas[cells].sum() for name, cells in mesh.volumes.items()} == pytest.approx(
+        {"body": 50.0, "steel": 50.0}, rel=1e-12
+    )
+    for name, length in (("top", 10.0), ("boundary", 30.0)):
+        ends = mesh.points[mesh.facets[name][:, :2]]
+        assert np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum() == pytest.approx(length, rel=1e-12)
+        assert len(np.unique(np.sort(mesh.facets[name], axis=1), axis=0)) == len(mesh.facets[name])
 
 
 def _disc(order: int = 2, recombine: bool = False, name: str = "disc", arc: str = "arc") -> None:

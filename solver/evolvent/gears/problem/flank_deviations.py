@@ -5,7 +5,8 @@
 
 One line a point of a grid over diameter and height; z_mm, from mid-face, may be left out where the profile is the same
 over the face. depth: what is missing of the designed flank, modifications included, normal to it; negative where there
-is more. Between points the depth is linear in the involute's arc and in z, beyond the chart that of its rim.
+is more. Between points the depth is linear in the involute's arc and in z, beyond the chart that of its rim: a chart
+may be a little shorter than the face (`face_coverage.py`).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
+from evolvent.gears.problem.face_coverage import SAME, FaceCoverage
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.csv_tables import Column, TableError, has_column, read_columns
 from evolvent_meshes.gears.gear import GearParameters
@@ -27,8 +29,6 @@ from evolvent_meshes.input_checks import Words, array, instance, refuse
 
 DIAMETER, HEIGHT = Column("diameter", (("mm", 1.0),)), Column("z", (("mm", 1.0),))
 DEPTH = Column("depth")
-SAME = 1e-6
-"""Diameters or heights that differ by less are one [mm]."""
 DEEPEST = 0.1
 """Largest depth [modules]: more is no flank any more, or another unit."""
 WIDEST = 1.5
@@ -69,7 +69,7 @@ class FlankChart:
         except (OSError, ValueError) as error:  # ValueError: the path has a NUL
             found = error.strerror if isinstance(error, OSError) else "a path with a NUL character"
             remedy = "check the path; where a scene names it, it starts from the scene's folder"
-            raise TableError(_shown(path), "a readable CSV file", str(found), remedy) from error
+            raise TableError(shown_path(path), "a readable CSV file", str(found), remedy) from error
         return _read(path, state.st_mtime_ns, state.st_size)
 
     @staticmethod
@@ -99,7 +99,7 @@ class FlankChart:
         """The chart from the base circle on. path: what a message names; active: diameters of a gear's active flank
         [mm], which it has to cover.
 
-        Raises TableError where it does not, or is of another size than the gear.
+        Raises TableError where it does not, does not suit the face, or is of another size than the gear.
         """
         low, high = active
         slack = 0.02 * (high - low)
@@ -111,18 +111,18 @@ class FlankChart:
             wanted = f"diameters above 0 up to {WIDEST * gear.tip_diameter:.4g} mm, for a tip of {gear.tip_diameter:g}"
             found = f"{self.diameters[0]:.4g} to {self.diameters[-1]:.4g} mm"
             raise TableError(path, wanted, found, "mind the unit, and which gear the chart is of")
-        half = gear.face_width / 2.0
-        reach = max(float(np.abs(self.heights).max()) - half, 0.0)
-        if len(self.heights) > 1 and (reach > half or np.ptp(self.heights) < half):
-            wanted = f"heights z from mid-face over a face width of {gear.face_width:g} mm"
-            found = f"{self.heights[0]:g} to {self.heights[-1]:g} mm"
-            raise TableError(path, wanted, found, "mind that z is 0 at mid-face, and mm")
+        if problem := self.coverage(gear).problem:
+            raise TableError(path, *problem)
         largest = float(np.abs(self.depth).max())
         if largest > DEEPEST * gear.normal_module:
             wanted = f"depths of at most {DEEPEST:g} normal modules, {1e3 * DEEPEST * gear.normal_module:g} µm"
             raise TableError(path, wanted, f"{1e3 * largest:.4g} µm", "is the column's unit right?")
         first = max(0, np.count_nonzero(self.diameters <= gear.base_diameter) - 1)
         return FlankChart(self.diameters[first:], self.heights, self.depth[first:])
+
+    def coverage(self, gear: GearParameters) -> FaceCoverage:
+        """Where the heights lie on a gear's face."""
+        return FaceCoverage.of(self.heights, gear.face_width)
 
     def arcs(self, gear: GearParameters) -> Floats:
         """Involute's length (k,) [mm] from a gear's base circle to the diameters."""
@@ -164,6 +164,6 @@ def _levels(values: Floats) -> tuple[Floats, Ints]:
     return values[order][np.concatenate([[True], new[1:]])], which
 
 
-def _shown(path: Path) -> str:
+def shown_path(path: Path | str) -> str:
     """A path as it stands in a message, unprintable characters escaped."""
     return str(path) if str(path).isprintable() else ascii(str(path))

@@ -108,7 +108,8 @@ class GearProblem:
     mesh: MeshSettings = MeshSettings()
     """How finely the sectors are meshed."""
     flanks: tuple[FlankChart | None, FlankChart | None] = (None, None)
-    """Measured or worn flanks of pinion and wheel; None: as designed."""
+    """Measured or worn flanks of pinion and wheel; None: as designed. A chart that covers 80 % of its gear's face, its
+    middle within 5 % of mid-face, is extended to the whole face, of which `condense` warns; less is refused."""
     options: GearOptions = GearOptions()
     """What is computed in full."""
     mesh_torques: tuple[float, float] | None = None
@@ -146,6 +147,12 @@ class GearProblem:
         chart, geometry = self.flanks[gear], self.pair.gears[gear]
         active = self.pair.active_start_diameters[gear], geometry.tip_form_diameter
         return None if chart is None else chart.checked(f"flanks, {gear.label}", geometry, active)
+
+    @property
+    def extended_charts(self) -> dict[Member, str]:
+        """Gear -> a phrase on its chart, where that does not end where the face does."""
+        charts = zip(Member, self.pair.gears, self.flanks)
+        return {m: words for m, gear, chart in charts if chart is not None and (words := chart.coverage(gear).words)}
 
     @cached_property
     def has_equal_sections(self) -> bool:

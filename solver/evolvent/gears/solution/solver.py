@@ -31,6 +31,10 @@ from evolvent_meshes.input_checks import instance, is_index, number, numbers, re
 LOG = logging.getLogger("evolvent")
 
 
+class ExtendedChartWarning(UserWarning):
+    """A flank chart does not end where the face of its gear does: it is extended by the depths at its ends, or cut."""
+
+
 @dataclass(frozen=True, eq=False)
 class PitchSolution:
     """A certified pitch at one friction coefficient: k positions in equal steps, whose friction history is periodic."""
@@ -99,7 +103,8 @@ class PitchSolution:
 
 
 def condense(problem: GearProblem, comm: MPI.Comm = MPI.COMM_WORLD) -> GearModel:
-    """Meshes and condenses both gears, once for all positions and friction coefficients.
+    """Meshes and condenses both gears, once for all positions and friction coefficients. Warns by
+    ExtendedChartWarning of a flank chart that does not end where the face of its gear does.
 
     Raises InputError for a torque that the gears cannot bear, MeshError, TooMuchRelief, NotPositiveDefinite,
     OutOfMemory.
@@ -117,6 +122,8 @@ def condense(problem: GearProblem, comm: MPI.Comm = MPI.COMM_WORLD) -> GearModel
     """
     instance("problem", problem, GearProblem, "write condense(GearProblem(pair, torque=...))")
     check_load(problem)
+    if comm.rank == 0:
+        _warn_of_charts(problem)
     dolfinx_compat.silence_logs()
     return prepare_model(problem, comm).model
 
@@ -197,6 +204,12 @@ def _cells_across(gears: GearModel, pressure: PitchPressure) -> float:
     """See PitchSolution."""
     pinion, half_widths = gears.bodies[0], np.concatenate([cut.half_width for cut in pressure.cuts])
     return cells_across(half_widths, pinion.z, pinion.roll_length, pinion.gear.base_radius, pinion.mesh.order)
+
+
+def _warn_of_charts(problem: GearProblem) -> None:
+    """Warns at the user's line of flank charts that are extended to the face, or cut, as `evolvent run` does."""
+    for gear, words in problem.extended_charts.items():
+        warn_user(f"flanks, {gear.label}: {words}", ExtendedChartWarning)
 
 
 def _warn_if_coarse(cells: float) -> None:

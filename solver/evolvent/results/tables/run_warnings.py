@@ -14,6 +14,7 @@ from evolvent.results.relief_kinks import peak_over_kink
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
+from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.checking.scene_warnings import FINER, few_cells
 from evolvent.scene.plain_text import brief, signed
 
@@ -42,6 +43,7 @@ def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
     """Warnings of a finished run, a sentence each. mesh: quality of its meshes."""
     rows = friction_rows(run)
     about = (
+        chart_warnings(run.scene),
         _about_the_load(run), _about_the_mesh(run, mesh), _about_tip_edges(run), _about_relief(run),
         _about_large_bars(rows), _about_error_bars(run), _about_spacing(run, rows),
     )  # fmt: skip

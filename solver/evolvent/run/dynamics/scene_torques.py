@@ -17,6 +17,7 @@ import numpy as np
 from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, scene_from_values
 from evolvent_meshes.arrays import Floats
@@ -60,11 +61,13 @@ class SceneTorques:
 
     @property
     def warnings(self) -> list[str]:
-        """A sentence where contacts are too narrow for their error bars."""
+        """Sentences on the scene's charts, and where contacts are too narrow for their error bars."""
+        said = chart_warnings(self.scene)
         narrow = [torque for torque, elements in zip(self.torques, self.elements) if elements < NARROWEST]
         if not narrow:
-            return []
+            return said
         return [
+            *said,
             f"torques up to {1e-3 * narrow[-1]:.3g} N·m: wanted a contact at least {NARROWEST:g} elements wide, found "
             f"{self.elements[0]:.2g} under the lightest; transmission error and stiffness may be off by several per "
             "cent, and error bars too small. Leave these torques out, or take finer meshes: "

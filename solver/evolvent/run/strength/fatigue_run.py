@@ -26,6 +26,7 @@ from evolvent.run.coarse_run import as_run, solve_companion
 from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
+from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.checking.scene_warnings import coarse_contact
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -167,5 +168,5 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
             folder.write_text(name, csv_text(values))
     folder.write_text(FATIGUE_FACTS, facts_text(facts))
     failures = draw([Picture(PICTURE, drawn)] if wanted_output(run.scene).pictures else [], folder).failures
-    said = [*failures, *coarse_contact(cells_across(run))]
+    said = [*failures, *chart_warnings(run.scene), *coarse_contact(cells_across(run))]
     return [*said, *(sentence for pair in zip(facts, found) for sentence in warnings_of(*pair))]

@@ -16,6 +16,7 @@ from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.progress import ERROR_BARS, OUTPUT, Progress
 from evolvent.run.strength.pitch_roots import pitch_roots, scene_root_meshes
+from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
@@ -79,7 +80,7 @@ def run_strength(
         progress.stage(OUTPUT)
         found = _by_friction(scene, fine.roots, None if coarse is None else coarse.roots)
         said = on_first(comm, lambda: _written(scene, loads, found, out))
-    return [*said, *formula_warnings(loads), *([failure] if failure else [])]
+    return [*said, *chart_warnings(scene), *formula_warnings(loads), *([failure] if failure else [])]
 
 
 def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:

@@ -14,6 +14,7 @@ from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings, tip_edge_warnings
 from evolvent.gears.meshing.undercut import undercut_warnings
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
+from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.checking.transient_rows import transient_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -27,6 +28,7 @@ def scene_warnings(scene: Scene) -> tuple[str, ...]:
 
 
 def _expected(scene: Scene) -> Iterator[str]:
+    yield from chart_warnings(scene)
     problem = gear_problem(scene)
     count = elements_per_contact_width(problem)
     if count < FEWEST_CELLS:

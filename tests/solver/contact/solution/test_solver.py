@@ -27,6 +27,7 @@ from evolvent import (
     Sweep,
     Traction,
     reactions,
+    read_msh,
     solve,
     sweep,
 )
@@ -34,6 +35,21 @@ from evolvent.contact.solution.full_system import full_solution
 from evolvent_meshes.shapes.blocks import rectangle
 from tests.support.checkout import ROOT
 from tests.support.contact_cases import FRICTION, cylinder
+from tests.support.meshes.overlapping_groups import HEIGHT, WIDTH, write_overlapping
+
+
+@pytest.mark.parametrize("version", [4.1, 2.2])
+def test_body_of_a_mesh_whose_entities_are_in_two_groups(version: float, tmp_path: Path) -> None:
+    """Problem: 100 N/mm over a width of 10 mm press a block 3 mm high onto one of 5 mm, which gmsh has meshed, with
+    entities in two groups: MSH 2.2 has their elements twice. ν = 0. Exact: a motion of −10·(5 + 3)/210e3 mm, a force of
+    100 N/mm."""
+    write_overlapping(tmp_path / "block.msh", version)
+    material, load = Material(210e3, 0.0), Rigid("top", (Freedom("y", load=-100.0),))
+    low = Body(read_msh(tmp_path / "block.msh"), material, (Fixed("held"),), name="low")
+    up = Body(rectangle(WIDTH, 3.0, 10, 3, origin=(0.0, HEIGHT)), material, (), rigid=load, name="up")
+    solution = solve(Problem((low, up), (Contact((0, "top"), (1, "bottom")),)))
+    assert solution.motions[1] == pytest.approx([-10.0 * (HEIGHT + 3.0) / 210e3], rel=1e-9)
+    assert solution.contacts[0].force == pytest.approx([0.0, 100.0], abs=1e-7)
 
 
 def test_programs_of_the_page_on_own_problems_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

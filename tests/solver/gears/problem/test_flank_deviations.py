@@ -98,8 +98,8 @@ WRONG = {
     "µm called mm": (changed("depth_um", "depth_mm"), "is the column's unit right?"),
     "radius": (FlankChart(DIAMETERS / 2, np.zeros(1), np.zeros((25, 1))).text(), "not radius"),
     "half the flank": (FlankChart(DIAMETERS[:12], np.zeros(1), np.zeros((12, 1))).text(), "over the whole active"),
-    "z in µm": (FlankChart(DIAMETERS, np.array([-1e4, 1e4]), np.zeros((25, 2))).text(), "over a face width"),
-    "one side": (FlankChart(DIAMETERS, np.array([8.0, 9.0]), np.zeros((25, 2))).text(), "over a face width"),
+    "z in µm": (FlankChart(DIAMETERS, np.array([-1e4, 1e4]), np.zeros((25, 2))).text(), "mind that z is in mm"),
+    "one side": (FlankChart(DIAMETERS, np.array([8.0, 9.0]), np.zeros((25, 2))).text(), "measure further"),
     "empty": ("", "a header and lines of numbers"),
 }
 

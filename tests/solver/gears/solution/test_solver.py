@@ -15,6 +15,8 @@ from mpi4py import MPI
 
 from evolvent.gears import (
     CoarseContactWarning,
+    ExtendedChartWarning,
+    FlankChart,
     GearOptions,
     GearProblem,
     MeshSettings,
@@ -136,6 +138,21 @@ def test_contact_of_few_elements_is_warned_of_once(gears: GearModel) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", CoarseContactWarning)
         assert solve_pitch(finer, 0.0, 2, MPI.COMM_SELF).cells_across > 2.0
+
+
+def test_extended_chart_is_warned_of() -> None:
+    """Problem: a profile 1 µm low over 80 % of the face, and over the whole face. Right: `condense` warns of the first
+    one at the line of its call, once for the pinion; not of the second."""
+    flat, d = np.full((2, 2), 1e-3), np.array([140.0, 156.0])
+    for half, count in ((8.0, 1), (10.0, 0)):
+        chart = FlankChart(d, np.array([-half, half]), flat)
+        charted = changed(mesh=MeshSettings("quick", order=1), flanks=(chart, None))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            assert condense(charted, MPI.COMM_SELF).width_factor == 20.0  # still plane
+        found = [each for each in caught if issubclass(each.category, ExtendedChartWarning)]
+        assert len(found) == count and all(each.filename == __file__ for each in found)
+        assert all("flanks, pinion: heights z = -8 to 8 mm cover 80 %" in str(each.message) for each in found)
 
 
 def test_single_position_without_friction_is_that_of_the_pitch(gears: GearModel) -> None:

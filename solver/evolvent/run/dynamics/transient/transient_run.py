@@ -33,6 +33,7 @@ from evolvent.run.dynamics.transient.kept_cases import KeptCases
 from evolvent.run.dynamics.transient.moving_companion import companion_of
 from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import OUTPUT, Progress
+from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.checking.scene_warnings import coarse_contact
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
@@ -73,7 +74,7 @@ def run_transient(
         found = own.found(kept())
         companion, missing = companion_of(scene, problem, settings, kept, comm, progress, prepare)
         progress.stage(OUTPUT)
-        said += unused_keys(dynamics)
+        said += [*chart_warnings(scene), *unused_keys(dynamics)]
         return said + missing + on_first(comm, lambda: _written(own, found, companion, out))
 
 

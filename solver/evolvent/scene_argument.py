@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import typer
 from mpi4py import MPI
 
+from evolvent.command_output import warn
 from evolvent.scene.schema.errors import SceneError
 
 if TYPE_CHECKING:
@@ -17,10 +18,15 @@ if TYPE_CHECKING:
 
 
 def loaded_scene(
-    path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None, comm: MPI.Comm
-) -> Scene:
-    """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks."""
+    path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None, comm: MPI.Comm,
+    warns: bool = True,
+) -> Scene:  # fmt: skip
+    """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks.
+
+    warns: print a warning on each key that has no effect.
+    """
     from evolvent.scene.scene import load_scene
+    from evolvent.scene.schema.dependence import effectless_keys
 
     result: Scene | SceneError | None = None
     if comm.rank == 0:
@@ -34,6 +40,8 @@ def loaded_scene(
     assert result is not None
     if isinstance(result, SceneError):
         raise result
+    if warns and comm.rank == 0:
+        warn(effectless_keys(result))
     return result
 
 

@@ -44,7 +44,7 @@ WRONG_FORMS: dict[str, tuple[str, list[str], str, str, str]] = {
         YANG, ["wheel.support_width_mm=20"], "wheel.support_width_mm", "20", "leave it out",
     ),
     "line support": (YANG, ["wheel.support_width_mm=0.1"], "wheel.support_width_mm", "0.1", "leave it out"),
-    "offset of the whole face": (YANG, ["wheel.support_offset_mm=2"], "wheel.support_offset_mm", "2", "give wheel.supp"),
+    "offset of the whole face": (YANG, ["wheel.support_offset_mm=2"], "wheel.support_offset_mm", "2", "give wheel.su"),
     "holes in the web": (YANG, ["wheel.web_holes=6"], "wheel.web_holes", "6", "delete it"),
     "web without a rim": (YANG, ["wheel.web_thickness_mm=8"], "wheel.web_thickness_mm", "8", "give wheel.rim_"),
     "hub without a web": (YANG, ["wheel.hub_diameter_mm=90"], "wheel.hub_diameter_mm", "90", "give wheel.web"),

@@ -11,6 +11,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
+from evolvent.results.tables.tables import cell_text
 from evolvent_meshes.files import open_file
 
 ERROR = "_error"
@@ -86,7 +87,8 @@ def _read(path: Path, rows: str) -> Iterator[Row]:
     except (OSError, ValueError):
         return
     if path.suffix == ".csv":
-        yield from csv.DictReader(text.splitlines())
+        for row in csv.DictReader(text.splitlines()):
+            yield {name: cell_text(cell) if isinstance(cell, str) else cell for name, cell in row.items()}
         return
     try:
         content = json.loads(text)

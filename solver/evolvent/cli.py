@@ -117,7 +117,7 @@ def check(
     That is: the gear data, the Hertz estimates, what will be skipped, and an estimate of dofs and memory.
     """
     with reported():
-        loaded = loaded_scene(scene, level, settings, no_skip)
+        loaded = loaded_scene(scene, level, settings, no_skip, warns=False)
         from evolvent.scene.checking.check_report import overview
 
         if out is not None:

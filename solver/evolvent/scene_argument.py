@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from evolvent.command_output import warn
 from evolvent.scene.schema.errors import SceneError
 
 if TYPE_CHECKING:
@@ -23,12 +24,15 @@ def loaded_scene(
     settings: Sequence[str] | None,
     no_skip: Sequence[str] | None,
     comm: MPI.Comm | None = None,
+    warns: bool = True,
 ) -> Scene:
     """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks.
 
-    comm: the ranks that take part; None: this process alone, without MPI.
+    comm: the ranks that take part; None: this process alone, without MPI. warns: print a warning on each key that has
+    no effect.
     """
     from evolvent.scene.scene import load_scene
+    from evolvent.scene.schema.dependence import effectless_keys
 
     result: Scene | SceneError | None = None
     if comm is None or comm.rank == 0:
@@ -42,6 +46,8 @@ def loaded_scene(
     assert result is not None
     if isinstance(result, SceneError):
         raise result
+    if warns and (comm is None or comm.rank == 0):
+        warn(effectless_keys(result))
     return result
 
 

@@ -81,7 +81,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "strength.standard": ("meshes", "meshes.gears"),
     "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
     "scene.schema.guesses": (),
-    "scene.schema": ("meshes", "scene.schema.guesses"),
+    "scene.schema": ("meshes", "meshes.gears.modifications", "scene.schema.guesses"),
     "scene": (
         "meshes", "meshes.gears", "meshes.gears.form", "meshes.gears.modifications", "fem", "gears.problem",
         "gears.meshing", "dynamics",

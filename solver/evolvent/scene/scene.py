@@ -21,6 +21,7 @@ from evolvent.scene.backlash import backlash_conflict
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
+from evolvent.scene.schema.dependence import without_main_key
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, section_of, shown, validation_error
 from evolvent.scene.schema.fatigue import FatigueSection
@@ -64,6 +65,12 @@ class Scene(SceneSection):
     fatigue: FatigueSection | None = None
     output: OutputSection = OutputSection()
     skip: SkipSection = SkipSection()
+
+    @model_validator(mode="after")
+    def _keys_have_an_effect(self) -> Self:
+        if problems := without_main_key(self):
+            raise validation_error(*problems)
+        return self
 
     @model_validator(mode="after")
     def _gears_mesh(self) -> Self:

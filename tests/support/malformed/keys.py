@@ -64,7 +64,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
     "level empty": (YANG, ['mesh.level=""'], "mesh.level", '""', "standard for results"),
     "hand a number": (YANG, ["pinion.hand=1"], "pinion.hand", "1", "delete the key"),
     "hand in capitals": (YANG, ["pinion.hand=Right"], "pinion.hand", '"Right"', 'write "right"'),
-    "yes for a truth value": (YANG, ["output.pictures=yes"], "output.pictures", '"yes"', "give true or false"),
+    "yes for a truth value": (YANG, ["output.pictures=yes"], "output.pictures", '"yes"', "write true"),
     "unknown skip": (YANG, ["skip.off=everything"], "skip.off[0]", '"everything"', "give names of this list"),
     "skip a number": (YANG, ["skip.off=[3]"], "skip.off[0]", "3", "give names of this list"),
     "table for a list": (YANG.replace("[pinion]", "[[pinion]]"), [], "pinion", "[a section", "write [pinion]"),
@@ -91,7 +91,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
     "hardening": (YANG, ["material.hardening_modulus_MPa=800"], "material.hardening_modulus_MPa", "800", "delete it"),
     "bevel gears": (YANG, ["pair.type=bevel"], "pair.type", '"bevel"', "delete it"),
     "internal gear": (YANG, ["wheel.internal=true"], "wheel.internal", "true", "delete it"),
-    "density": (YANG, ["material.density=7850"], "material.density", "7850", "delete it"),
+    "density": (YANG, ["material.density=7850"], "material.density", "7850", "mean dynamics.density_kg_m3"),
     "roughness": (YANG, ["contact.roughness_um=0.8"], "contact.roughness_um", "0.8", "delete it"),
     "pitch error": (YANG, ["pinion.pitch_error_um=5"], "pinion.pitch_error_um", "5", "delete it"),
 }
@@ -100,7 +100,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
 UNSUPPORTED: dict[str, str] = {
     "form deviation": "a chart as pinion.flank_csv can have it",
     "end chamfer": "chamfers of the teeth's ends are not supported",
-    "speed": "there is no time and no speed",
+    "speed": "there is no time and no speed outside",
     "speed of the load": "did you mean dynamics.speed_rpm",
     "shaft": "shafts are not modelled",
     "bearings": "bearings and shafts are not modelled",
@@ -110,7 +110,7 @@ UNSUPPORTED: dict[str, str] = {
     "hardening": "plasticity is not supported",
     "bevel gears": "spur and helical external pairs only",
     "internal gear": "internal gears are not supported",
-    "density": "a run is quasi-static",
+    "density": r"did you mean dynamics\.density_kg_m3",
     "roughness": "roughness is not supported",
     "pitch error": "all teeth are alike",
 }

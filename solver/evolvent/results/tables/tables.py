@@ -19,6 +19,9 @@ from evolvent.results.tables.figure_rows import friction_rows, position_rows
 from evolvent.results.tables.run_warnings import warnings_of
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, RunFacts, Summary
 
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r", "'")
+"""How cells begin that spreadsheets take for formulas, and the apostrophe that says they are none."""
+
 
 def summary(run: RunData, facts: RunFacts) -> Summary:
     """The content of summary.json."""
@@ -65,13 +68,30 @@ def csv_text(rows: Sequence[Mapping[str, object]]) -> str:
     stream = io.StringIO()
     writer = csv.DictWriter(stream, fieldnames=list(rows[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows({key: _rounded(value) for key, value in row.items()} for row in rows)
+    writer.writerows({key: _cell(value) for key, value in row.items()} for row in rows)
     return stream.getvalue()
 
 
-def _rounded(value: object) -> object:
-    """A number with nine digits, enough for reading and for comparing two runs."""
-    return f"{value:.9g}" if isinstance(value, float) else value
+def _cell(value: object) -> object:
+    """A number with nine digits, enough for reading and for comparing two runs; behind an apostrophe a text that a
+    spreadsheet would compute, or that begins with an apostrophe itself."""
+    if isinstance(value, float):
+        return f"{value:.9g}"
+    is_formula = isinstance(value, str) and value.startswith(FORMULA_STARTS) and not _is_number(value)
+    return f"'{value}" if is_formula else value
+
+
+def cell_text(cell: str) -> str:
+    """The text of a cell that `csv_text` has written."""
+    return cell[1:] if cell.startswith("'") and cell[1:].startswith(FORMULA_STARTS) else cell
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def without_nan(value: object) -> object:

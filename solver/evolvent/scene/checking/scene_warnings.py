@@ -18,6 +18,7 @@ from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.checking.transient_rows import transient_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dependence import effectless_keys
 
 FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
 
@@ -29,6 +30,7 @@ def scene_warnings(scene: Scene) -> tuple[str, ...]:
 
 def _expected(scene: Scene) -> Iterator[str]:
     yield from chart_warnings(scene)
+    yield from effectless_keys(scene)
     problem = gear_problem(scene)
     count = elements_per_contact_width(problem)
     if count < FEWEST_CELLS:

@@ -57,6 +57,7 @@ class DynamicsSection(SceneSection):
         "the mesh force: as computed over deflection and rotation, or the tangent or secant stiffness under the torque "
         "times the deflection",
         '"force_surface", "tangent" or "secant"',
+        'give "tangent" or "secant" for a force linear in the deflection, "force_surface" for the computed one',
         default="force_surface",
     )
     torque_percents: tuple[float, ...] = key(
@@ -100,7 +101,7 @@ class DynamicsSection(SceneSection):
     )  # fmt: skip
     coming: Literal["up", "down"] = key(
         "from which side the pair has come to that speed, where its vibration depends on it: running up or down",
-        '"up" or "down"', default="up",
+        '"up" or "down"', needs=("operating_rpm",), default="up",
     )  # fmt: skip
 
     histories_rpm: tuple[float, ...] = key(
@@ -115,8 +116,8 @@ class DynamicsSection(SceneSection):
         default=(), max_length=MAP[1],
     )  # fmt: skip
     map_speeds: int = key(
-        "number of speeds of that map, evenly spaced", f"a whole number from 2 to {MOST_SPEEDS}", default=100, ge=2,
-        le=MOST_SPEEDS,
+        "number of speeds of that map, evenly spaced", f"a whole number from 2 to {MOST_SPEEDS}",
+        needs=("map_percents",), default=100, ge=2, le=MOST_SPEEDS,
     )  # fmt: skip
     base_pitch_deviation_um: float = key(
         "f_pb, deviation of the transverse base pitch, the larger of both gears, for K_v of ISO 6336-1 beside the "
@@ -137,6 +138,7 @@ class DynamicsSection(SceneSection):
         "which running-in ISO 6336-1 reckons with: surface hardened or nitrided teeth, through hardened or normalised "
         "ones, or grey cast iron",
         '"hardened", "through_hardened" or "cast_iron"',
+        needs=("base_pitch_deviation_um", "profile_deviation_um"),
         default="hardened",
     )
     contact_endurance_MPa: float | None = key(
@@ -240,7 +242,7 @@ class TransientSection(SceneSection):
     most_parts: int = key(
         "with a tolerance, equal parts into which the way from one position to the next is divided at most; a sentence "
         "says where they do not reach it",
-        PARTS, f"{MANY_PARTS} is the default", default=MANY_PARTS, ge=2, le=MOST_PARTS,
+        PARTS, f"{MANY_PARTS} is the default", needs=("tolerance",), default=MANY_PARTS, ge=2, le=MOST_PARTS,
     )  # fmt: skip
 
     @model_validator(mode="after")

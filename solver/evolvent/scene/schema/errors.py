@@ -13,8 +13,10 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
+from evolvent.scene.schema.guesses.meant_key import meant_key, meant_section
 from evolvent.scene.schema.guesses.meant_value import expected, meant_value
-from evolvent.scene.schema.guesses.nearest_key import nearest_key, unit_conversion
+from evolvent.scene.schema.guesses.terms import Meant
+from evolvent.scene.schema.guesses.units import unit_conversion
 from evolvent.scene.schema.not_supported import not_supported
 from evolvent.scene.schema.section import SceneSection
 from evolvent_meshes.errors import InputError
@@ -27,6 +29,8 @@ LONGEST_NUMBER = 40
 """Largest number of digits of a whole number that are shown."""
 BEYOND = {"greater_than": "too_small", "greater_than_equal": "too_small", "less_than_equal": "too_large"}
 """Type of pydantic's error on a number beyond a limit -> the word of the declaration that has its remedy."""
+ASKED = re.compile(r"did you mean (\S+?)(?: or \S+)*(?: \(.*\))?\?")
+"""The remedy of an unknown key or section that names what was meant."""
 LONGEST_TEXT = 60
 """Largest number of characters of a value or a key that are shown."""
 
@@ -64,15 +68,15 @@ class SceneError(InputError):
         return SceneError, (self.problems, self.source)
 
 
-def validation_error(problem: InputProblem) -> PydanticCustomError:
-    """The exception to be raised by a validator of a scene section. The problem's key is relative to this section."""
-    return PydanticCustomError("scene", "scene", {"problem": problem})
+def validation_error(*problems: InputProblem) -> PydanticCustomError:
+    """The exception to be raised by a validator of a scene section. The problems' keys are relative to this section."""
+    return PydanticCustomError("scene", "scene", {"problems": problems})
 
 
 def problems_of(error: ValidationError, model: type[SceneSection]) -> list[InputProblem]:
     """The problems of a failed validation, with the texts of the schema `model`: all, or the first `MOST`."""
     details = _without_emptied_lists(error.errors(include_url=False))
-    problems = _without_consequences([_problem(each, model) for each in details[:MOST]])
+    problems = _without_consequences([problem for each in details[:MOST] for problem in _problems(each, model)])
     if len(details) > MOST:
         more, remedy = len(details) - MOST, f"mend these first; is this a {model.kind} file at all?"
         wanted = f"a {model.kind} ({model.page})"
@@ -88,7 +92,7 @@ def _without_emptied_lists(details: list[ErrorDetails]) -> list[ErrorDetails]:
 
 def _without_consequences(problems: list[InputProblem]) -> list[InputProblem]:
     """The problems without those on what is missing only because its name is misspelled: the spelling is the remedy."""
-    asked = [(problem.key, re.match(r"did you mean (\S+)\?", problem.remedy)) for problem in problems]
+    asked = [(problem.key, ASKED.match(problem.remedy)) for problem in problems]
     meant = {match[1] for key, match in asked if match and key.rpartition(".")[0] == match[1].rpartition(".")[0]}
     return [problem for problem in problems if problem.found != NOTHING or problem.key not in meant]
 
@@ -113,12 +117,17 @@ def _short(text: str, limit: int = LONGEST_TEXT) -> str:
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 
-def _problem(details: ErrorDetails, model: type[SceneSection]) -> InputProblem:
-    """The problem that one of pydantic's errors reports."""
+def _problems(details: ErrorDetails, model: type[SceneSection]) -> list[InputProblem]:
+    """The problems that one of pydantic's errors reports."""
     path = list(details["loc"])
     if details["type"] == "scene":
-        problem: InputProblem = details["ctx"]["problem"]
-        return replace(problem, key=dotted([*path, problem.key] if problem.key else path))
+        problems: tuple[InputProblem, ...] = details["ctx"]["problems"]
+        return [replace(each, key=dotted([*path, each.key] if each.key else path)) for each in problems]
+    return [_problem(path, details, model)]
+
+
+def _problem(path: list[str | int], details: ErrorDetails, model: type[SceneSection]) -> InputProblem:
+    """The problem that an error of pydantic's own reports, of the key at the end of a path."""
     if details["type"] == "extra_forbidden":
         return _unknown_key(path, details["input"], model)
     missing = details["type"] == "missing"
@@ -175,32 +184,35 @@ def key_problem(name: str, value: Any, model: type[SceneSection]) -> InputProble
 
 
 def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -> InputProblem:
-    """The problem with an unknown key or section: it names the most similar key, or says what is not supported."""
+    """The problem with an unknown key or section: it names what was meant, or says what is not supported."""
     name, parents = str(path[-1]), [part for part in path[:-1] if isinstance(part, str)]
-    kind = "section" if isinstance(value, dict) else "key"
-    found = f"an unknown {kind}, {shown(value)}"
+    found = f"an unknown {'section' if isinstance(value, dict) else 'key'}, {shown(value)}"
     place = f"a key of [{dotted(parents)}]" if parents else "a section or key"
     allowed = f"{place} that {model.page} lists"
-    words = not_supported(name, dotted(parents))
-    similar = _similar(name, parents, model, strict=bool(words))
-    if words and not similar:
-        return InputProblem(dotted(path), found, f"{allowed}; {words}", "delete it")
-    if not similar:
+    meant = _meant(name, parents, model, isinstance(value, dict))
+    if meant is None:
         return InputProblem(dotted(path), found, allowed, f"delete it, or see {model.page}")
-    converted = unit_conversion(name, similar)
-    remedy = f"did you mean {similar}? {f'Then {converted}; else' if converted else 'Else'} delete it"
+    if not meant.keys:
+        return InputProblem(dotted(path), found, allowed, f"delete it: {meant.note}")
+    then, note = unit_conversion(name, meant.keys[0]), f" ({meant.note})" if meant.note else ""
+    remedy = f"did you mean {' or '.join(meant.keys)}{note}? {f'Then {then}; else' if then else 'Else'} delete it"
     return InputProblem(dotted(path), found, allowed, remedy)
 
 
-def _similar(name: str, parents: list[str], model: type[BaseModel], strict: bool) -> str:
-    """The dotted key that an unknown one was probably meant to be; empty where there is none."""
-    section = section_of(_declaration(parents, model)) if parents else model
-    assert section is not None
-    prefix = f"{dotted(parents)}." if parents else ""
-    here = {prefix + key: field.description or "" for key, field in section.model_fields.items()}
-    sections = {key: "" for key in model.model_fields}
-    everywhere = sections | {key: field.description or "" for key, field in keys_of(model).items()}
-    return nearest_key(name, here, everywhere, strict)
+def _meant(name: str, parents: list[str], model: type[SceneSection], is_section: bool) -> Meant | None:
+    """What was meant by an unknown key or section."""
+    parent = dotted(parents)
+    inside = section_of(_declaration(parents, model)) if parents else model
+    assert inside is not None
+    here = [f"{parent}.{key}" if parent else key for key in inside.model_fields]
+    sections = [key for key, field in zip(here, inside.model_fields.values()) if section_of(field)]
+    if is_section:
+        found = meant_section(name, parent, sections, model.kind)
+    else:
+        found = meant_key(name, parent, [key for key in here if key not in sections], keys_of(model), model.kind)
+    if found is None and model.kind == "scene" and (words := not_supported(name, parent)):
+        return Meant((), words)
+    return found
 
 
 def _not_a_section(path: list[str | int], value: Any, section: type[BaseModel]) -> InputProblem:

@@ -48,7 +48,7 @@ class FatigueSection(SceneSection):
     normal_factor: float = key(
         "factor k on the largest tension on the plane of the criterion of Fatemi and Socie; the default is a choice, "
         "tests of the material have its value",
-        "a number from 0 to 5", default=1.0, ge=0, le=5,
+        "a number from 0 to 5", needs=("yield_stress_MPa",), default=1.0, ge=0, le=5,
     )  # fmt: skip
     exponents: Annotated[tuple[Exponent, ...], BeforeValidator(as_tuple)] = key(
         "slopes m, N ∝ value^−m, for which lives are compared, beside those that a criterion has by its source: a "

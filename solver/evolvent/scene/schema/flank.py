@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Literal
 
 from evolvent.scene.schema.section import SceneSection, key
+from evolvent_meshes.gears.modifications.modifications import FROM_CONTROL_DIAMETER
 
 LONGEST = 1e6
 """Largest diameter and distance [mm]: a gear with 1000 teeth of module 50 has 71 m."""
@@ -29,13 +30,15 @@ class FlankKeys(SceneSection):
         "diameter at which the tip relief starts; d_a − m_n by default",
         LENGTH,
         DERIVED,
+        needs=("tip_relief_um",),
         default=None,
         gt=0,
         le=LONGEST,
     )
     tip_relief_form: Literal["linear", "parabolic"] = key(
-        "how the tip relief grows with the roll distance", '"linear" or "parabolic"', default="linear"
-    )
+        "how the tip relief grows with the roll distance", '"linear" or "parabolic"',
+        needs=("tip_relief_um",), default="linear",
+    )  # fmt: skip
     root_relief_um: float = key(
         "root relief C_αf: material taken off the flank at the profile control diameter", AMOUNT, default=0.0, ge=0,
         le=MOST,
@@ -45,13 +48,15 @@ class FlankKeys(SceneSection):
         "by default",
         LENGTH,
         DERIVED,
+        needs=("root_relief_um",),
         default=None,
         gt=0,
         le=LONGEST,
     )
     root_relief_form: Literal["linear", "parabolic"] = key(
-        "how the root relief grows with the roll distance from there", '"linear" or "parabolic"', default="linear"
-    )
+        "how the root relief grows with the roll distance from there", '"linear" or "parabolic"',
+        needs=("root_relief_um",), default="linear",
+    )  # fmt: skip
     profile_crowning_um: float = key(
         "profile crowning (barrelling) C_α: material taken off the flank at the tip and at the profile control "
         "diameter, a parabola of the roll distance",
@@ -73,6 +78,7 @@ class FlankKeys(SceneSection):
         "to the tip; the diameter d_Nf at the start of the active profile by default",
         LENGTH,
         DERIVED,
+        needs=FROM_CONTROL_DIAMETER,
         default=None,
         gt=0,
         le=LONGEST,
@@ -97,13 +103,15 @@ class FlankKeys(SceneSection):
         "length of the end relief at either end of the face; a tenth of the face width by default",
         LENGTH,
         DERIVED,
+        needs=("end_relief_um",),
         default=None,
         gt=0,
         le=LONGEST,
     )
     end_relief_form: Literal["linear", "parabolic"] = key(
-        "how the end relief grows with z", '"linear" or "parabolic"', default="linear"
-    )
+        "how the end relief grows with z", '"linear" or "parabolic"',
+        needs=("end_relief_um",), default="linear",
+    )  # fmt: skip
     twist_um: float = key(
         "twist (bias) S_α: profile slope C_Hα at the end z > 0 of the face less that at z < 0, in between linear in z",
         SIGNED,

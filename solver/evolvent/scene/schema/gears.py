@@ -155,6 +155,7 @@ class BodyKeys(SceneSection):
         "direction of the helix; the pinion's is right by default, the wheel's the other one",
         '"right" or "left"',
         "delete the key for the default",
+        needs=("pair.helix_angle_deg",),
         default=None,
     )
     bore_diameter_mm: float | None = key(
@@ -179,6 +180,7 @@ class BodyKeys(SceneSection):
         "body is as wide as the face",
         LENGTH,
         "delete the key for a full ring",
+        needs=("rim_thickness_mm",),
         default=None,
         gt=0,
         le=LONGEST,
@@ -186,6 +188,7 @@ class BodyKeys(SceneSection):
     web_offset_mm: float = key(
         "axial position of the web's middle, from mid-face towards z > 0",
         "a number from -500 to 500, in mm",
+        needs=("web_thickness_mm",),
         default=0.0,
         ge=-500,
         le=500,
@@ -195,6 +198,7 @@ class BodyKeys(SceneSection):
         "over its thickness",
         LENGTH,
         "delete the key for a web that reaches the bore",
+        needs=("web_thickness_mm",),
         default=None,
         gt=0,
         le=LONGEST,
@@ -210,6 +214,7 @@ class BodyKeys(SceneSection):
     support_offset_mm: float = key(
         "axial position of the middle of that length, from mid-face towards z > 0",
         "a number from -500 to 500, in mm",
+        needs=("support_width_mm",),
         default=0.0,
         ge=-500,
         le=500,
@@ -231,20 +236,6 @@ class BodyKeys(SceneSection):
             if one is not None and two is not None and not has_both:
                 found = f"{shown(one)} and also {second} = {shown(two)}"
                 raise validation_error(InputProblem(first, found, "one of the two", f"delete {first} or {second}"))
-        return self
-
-    @model_validator(mode="after")
-    def _whole_web(self) -> Self:
-        """Rim, web and hub are given together."""
-        if self.web_thickness_mm is not None:
-            if self.rim_thickness_mm is None:
-                allowed, remedy = "with rim_thickness_mm", "give rim_thickness_mm, of the rim on the web"
-                raise validation_error(InputProblem("web_thickness_mm", shown(self.web_thickness_mm), allowed, remedy))
-            return self
-        for name in ("hub_diameter_mm", "web_offset_mm"):
-            if value := getattr(self, name):
-                remedy = f"give web_thickness_mm, or delete {name}"
-                raise validation_error(InputProblem(name, shown(value), "with web_thickness_mm", remedy))
         return self
 
 

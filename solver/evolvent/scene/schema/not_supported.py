@@ -7,9 +7,7 @@ import re
 NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"(end_?|face_?|side_?)chamfer|edge_?break", "chamfers of the teeth's ends are not supported; tip_chamfer_um and "
       "tip_rounding_um are those of the tips"),
-    (r"rpm|speed|omega|velocity|frequency|time", "there is no time and no speed outside [dynamics]: quasi-static"),
     (r"power|kw", "there is no power without a speed: give the torque, load.torque_Nm"),
-    (r"dynamic|damping|inertia|mass|density|vibration|noise|nvh", "a run is quasi-static; that is for [dynamics]"),
     (r"bearing|housing", "bearings and shafts are not modelled: bores are held rigidly, "
      "pair.misalignment_um takes what tilts them"),
     (r"shaft|key_?way|hub", "shafts are not modelled: the bore, bore_diameter_mm, is held rigidly over "
@@ -38,11 +36,22 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
 """Regular expression for the name of an unknown key, perhaps behind its section's, and what to answer."""
 
 
+OUTSIDE_DYNAMICS: tuple[tuple[str, str], ...] = (
+    (r"rpm|speed|omega|velocity|frequency|time", "there is no time and no speed outside [dynamics] and [transient]: "
+     "a run is quasi-static"),
+    (r"dynamic|damping|inertia|mass|density|vibration|noise|nvh", "a run is quasi-static; that is for [dynamics]"),
+)  # fmt: skip
+"""The same, of other sections than those of `IN_TIME`."""
+IN_TIME = ("dynamics", "transient")
+"""Sections with speeds and inertia."""
+
+
 def not_supported(name: str, section: str = "") -> str:
     """The answer to an unknown key of a section, empty where it matches no pattern."""
     own, whole = name.lower()[:60], f"{section}.{name}".lower()[:60]
-    names = (own,) if section == "dynamics" else (own, whole)  # its keys are not what is sought in vain
-    found = (words for pattern, words in NOT_SUPPORTED if any(_begins(pattern, each) for each in names))
+    names = (own,) if section in IN_TIME else (own, whole)  # its keys are not what is sought in vain
+    patterns = NOT_SUPPORTED if section in IN_TIME else (*NOT_SUPPORTED, *OUTSIDE_DYNAMICS)
+    found = (words for pattern, words in patterns if any(_begins(pattern, each) for each in names))
     return next(found, "")
 
 

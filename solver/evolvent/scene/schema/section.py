@@ -14,6 +14,8 @@ def key(
     *,
     too_small: str = "",
     too_large: str = "",
+    needs: tuple[str, ...] = (),
+    holding: JsonValue = None,
     default: Any = ...,
     **limits: Any,
 ) -> Any:
@@ -21,11 +23,14 @@ def key(
 
     meaning: what the key stands for. allowed: which values it takes. remedy: what to do about another value, by default
     to give an allowed one. too_small, too_large: what to do about a value beyond the limits, by default `remedy`.
-    default: its value where it is not given; a key without a default is required. limits: as for pydantic.Field.
+    needs: the main keys without all of which this one has no effect (`evolvent.scene.schema.dependence`): of the same
+    section, or dotted. holding: what the list of a main key must hold for that. default: its value where it is not
+    given; a key without a default is required. limits: as for pydantic.Field.
     """
-    remedy = remedy or f"give {allowed.split(',')[0]}"
+    remedy = remedy or f"give {allowed}"
     words: dict[str, JsonValue] = {
-        "allowed": allowed, "remedy": remedy, "too_small": too_small or remedy, "too_large": too_large or remedy
+        "allowed": allowed, "remedy": remedy, "too_small": too_small or remedy, "too_large": too_large or remedy,
+        "needs": list(needs), "holding": holding,
     }  # fmt: skip
     return Field(default, description=meaning, json_schema_extra=words, **limits)
 

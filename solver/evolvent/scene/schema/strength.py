@@ -81,7 +81,7 @@ class StrengthSection(SceneSection):
         "of ISO 1328-1, the coarser of both gears: up to 4 the edition of 2006 reckons with teeth that share the load, "
         "Y_DT, where the virtual contact ratio is above 2.05; by default it does not",
         "a whole number from 1 to 12",
-        default=None, ge=1, le=12,
+        needs=("editions",), holding=2006, default=None, ge=1, le=12,
     )  # fmt: skip
 
     root_refinement: int = key(

@@ -13,7 +13,7 @@ import pytest
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import degrees, friction_rows, position_rows
-from evolvent.results.tables.tables import summary, write_tables
+from evolvent.results.tables.tables import cell_text, csv_text, summary, write_tables
 from tests.support.run_parts import FACTS, store
 from tests.support.synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
 
@@ -154,3 +154,20 @@ def test_angles_in_degrees_have_no_round_off(tmp_path: Path) -> None:
     assert all(len(repr(angle).partition(".")[2]) <= 6 for angle in angles)
     np.testing.assert_allclose(angles[:12:2], np.arange(6) * 60 / 17, atol=5.1e-7)
     assert [degrees(k * 2.0 * np.pi / 24 / 20) for k in range(-20, 20)] == [0.75 * k for k in range(-20, 20)]
+
+
+@pytest.mark.parametrize(
+    "text", ["=1+1", '=HYPERLINK("http://a.b","c, d")', "+A1", "-A1", "@SUM(A1)", "\tx", "'=quoted", "'", "''", "=a\nb"]
+)
+def test_texts_are_no_formulas(text: str) -> None:
+    """A title or reason that begins as a spreadsheet's formula does: the cell begins with an apostrophe, so that
+    nothing is computed from it, and reading it back gives the text."""
+    [row] = csv.DictReader(csv_text([{"title": text, "value": 1.0}]).splitlines(keepends=True))
+    assert row["title"].startswith("'") and cell_text(row["title"]) == text and row["value"] == "1"
+
+
+@pytest.mark.parametrize("value", [-1.5, -2, "-1.5", "+3e5", "nan", "up", "[-1, 2]", "a=b", ""])
+def test_numbers_and_plain_texts_are_written_as_they_are(value: object) -> None:
+    """Negative numbers, and texts that are no formulas, are not touched."""
+    [row] = csv.DictReader(csv_text([{"cell": value, "other": 1}]).splitlines())
+    assert row["cell"] == str(value) == cell_text(row["cell"])

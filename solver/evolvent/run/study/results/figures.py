@@ -117,7 +117,7 @@ def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
     names = study.figures or (*DEFAULTS[study.compute], *(each.name for each in own))
     for name in names:
         if name not in known:
-            meant = nearest_key(name, dict.fromkeys(known, ""), {})
+            meant = nearest_key(name, known)
             allowed = f'figures of "{study.compute}" (docs/studies.md), or names of [[figure]]'
             remedy = f"did you mean {meant}?" if meant else f"take some of {', '.join(known)}"
             raise SceneError([InputProblem("figures", f"{name!r}, an unknown figure", allowed, remedy)], source)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import difflib
 import tomllib
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
+from evolvent.scene.schema.guesses.value_words import values_meant
+
+ALIKE = 0.75
+"""Least similarity of a misspelled word to one that is allowed (difflib's ratio)."""
 LONGEST = 60
 """Longest text that is tried [characters]."""
 STRICT = ConfigDict(strict=True, allow_inf_nan=False)
@@ -20,7 +25,8 @@ def meant_value(value: Any, field: FieldInfo) -> Any | None:
     for part in field.metadata:
         wanted = Annotated[wanted, part]
     adapter: TypeAdapter[Any] = TypeAdapter(wanted, config=STRICT)
-    return next((near for near in _near(value) if _fits(near, adapter)), None)
+    candidates = [*_near(value), *_words_like(value, field.annotation)]
+    return next((near for near in candidates if _fits(near, adapter)), None)
 
 
 def expected(kind: str, value: Any) -> str:
@@ -41,6 +47,20 @@ def _fits(value: Any, adapter: TypeAdapter[Any]) -> bool:
     except ValidationError:
         return False
     return True
+
+
+def _words_like(value: Any, annotation: Any) -> list[Any]:
+    """What a word may stand for, and allowed words that are spelled much alike."""
+    if not isinstance(value, str) or len(value) > LONGEST:
+        return []
+    return [*values_meant(value), *difflib.get_close_matches(value.lower(), _choices(annotation), 1, ALIKE)]
+
+
+def _choices(annotation: Any) -> list[str]:
+    """The words that a type allows."""
+    if get_origin(annotation) is Literal:
+        return [each for each in get_args(annotation) if isinstance(each, str)]
+    return [choice for each in get_args(annotation) for choice in _choices(each)]
 
 
 def _near(value: Any) -> Iterator[Any]:

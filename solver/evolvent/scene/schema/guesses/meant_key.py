@@ -1,0 +1,44 @@
+"""Guesses what was meant by an unknown key or section: by tables of words, by its name elsewhere, by its spelling."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from evolvent.scene.schema.guesses.gear_terms import GEAR_TERMS
+from evolvent.scene.schema.guesses.nearest_key import nearest_key
+from evolvent.scene.schema.guesses.other_terms import OTHER_TERMS, SECTION_TERMS, STUDY_TERMS
+from evolvent.scene.schema.guesses.terms import Meant, meant_by
+from evolvent.scene.schema.guesses.units import stem_of
+
+KEY_TERMS = {"scene": (*GEAR_TERMS, *OTHER_TERMS), "study": STUDY_TERMS}
+"""Kind of file -> words for keys."""
+
+
+def meant_key(name: str, section: str, here: Collection[str], everywhere: Collection[str], kind: str) -> Meant | None:
+    """What was meant by an unknown key; None where nothing is known of it.
+
+    section:    dotted, that it is in; empty for the top of the file.
+    here:       dotted keys of this section.
+    everywhere: those of all sections.
+    kind:       of the file, of `KEY_TERMS`.
+    """
+    stem = stem_of(name)
+    if same := [key for key in here if stem_of(key) == stem]:
+        return Meant((nearest_key(name, same) or same[0],), "")
+    for word in (name.lower(), stem):  # m_n ends with no unit
+        if meant := meant_by(word, section, KEY_TERMS[kind]):
+            return meant
+    if "_" in stem and (same := [key for key in everywhere if key.rpartition(".")[2].lower() == name.lower()]):
+        return Meant(tuple(same), "")
+    near = nearest_key(name, here)
+    return Meant((near,), "") if near else None
+
+
+def meant_section(name: str, parent: str, here: Collection[str], kind: str) -> Meant | None:
+    """What was meant by an unknown section; None where nothing is known of it. Parameters: as of `meant_key`, of
+    sections."""
+    terms = SECTION_TERMS if kind == "scene" else STUDY_TERMS
+    if meant := meant_by(name.lower(), parent, terms):
+        return meant
+    near = nearest_key(name, here)
+    return Meant((near,), "") if near else None

@@ -1,0 +1,64 @@
+"""Words of users for a quantity, and what a scene has in its place: the form of the tables beside, and the search."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+GEARS = ("pinion", "wheel")
+GEAR = "gear"
+"""In tables: the section of either gear."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """Words for one quantity."""
+
+    words: str
+    """Separated by spaces, in lower case, without their unit. One that means this in one section only has the section
+    in front: `pair.a`."""
+    keys: tuple[str, ...] = ()
+    """Dotted keys of the scene that hold the quantity; `gear.` stands for `pinion.` or `wheel.`. Without any the scene
+    has no key for it."""
+    note: str = ""
+    """How a value is converted, if not by its unit; or why there is no key."""
+    source: str = ""
+    """The standard, or kind of program, that has these words."""
+
+
+@dataclass(frozen=True)
+class Meant:
+    """What a scene has in place of an unknown key."""
+
+    keys: tuple[str, ...]
+    """Dotted, as they are written; none where there is no key for it."""
+    note: str
+    """As of `Term`."""
+
+
+def meant_by(stem: str, section: str, terms: Iterable[Term]) -> Meant | None:
+    """What a word means in a section; None where no table has it.
+
+    stem: the word in lower case, without its unit. section: dotted, empty for the top of the file.
+    """
+    in_table = GEAR if section in GEARS else section.partition(".")[0]
+    whole = f"{in_table}.{stem}"
+    found = {word: term for term in terms for word in term.words.split() if word in (stem, whole)}
+    term = found.get(whole) or found.get(stem)
+    if term is None:
+        return None
+    return Meant(tuple(_written(key, section) for key in _both(term.keys, section)), term.note)
+
+
+def _both(keys: tuple[str, ...], section: str) -> tuple[str, ...]:
+    """The keys, those of a gear for each gear where the section is not that of one."""
+    of_gears = GEARS if section not in GEARS else (GEAR,)
+    return tuple(
+        f"{gear}.{key.removeprefix('gear.')}" if key.startswith("gear.") else key
+        for key in keys for gear in (of_gears if key.startswith("gear.") else ("",))
+    )  # fmt: skip
+
+
+def _written(key: str, section: str) -> str:
+    """The key of the gear that the section is of; another key as it is."""
+    return f"{section}.{key.removeprefix('gear.')}" if key.startswith("gear.") else key

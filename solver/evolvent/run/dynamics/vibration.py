@@ -14,7 +14,7 @@ from evolvent.dynamics.iso_stiffness import outside_range
 from evolvent.dynamics.oscillator.response import MESHES, Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
-from evolvent.dynamics.pair_model import Drive, DriveSettings, check_room, drive
+from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.histories import Motion, history_rows, motions, write_histories
 from evolvent.dynamics.results.response import (
@@ -48,7 +48,7 @@ from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
 from evolvent.run.dynamics.vibration_errors import errors_over_speed, vibration_of
 from evolvent.run.dynamics.written_files import OF_DYNAMICS, PORTRAITS, VIBRATION_PICTURE, WATERFALL
 from evolvent.run.progress import OUTPUT, Progress
-from evolvent.scene.pair_dynamics import check_positions, drive_settings
+from evolvent.scene.pair_dynamics import check_backlash, check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
@@ -72,10 +72,10 @@ def run_dynamics(
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     check_positions(scene)
+    check_backlash(scene)
     section = scene.dynamics or DynamicsSection()
     loads = scene_torques(scene, section.torque_percents)
     fine, coarse = kept_positions(loads, out, resume)
-    check_room(loads.problem, scene.sweep.positions, drive_settings(loads.problem.pair, section))
     with writing_results(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
         excitation = computed_excitation(loads, comm, progress, fine, prepare)
         companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
@@ -126,7 +126,7 @@ def _written(
     failures += draw(pictures if wanted_output(loads.scene).pictures else [], folder).failures
     said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
     said = *said, *_not_repeating(vibrating, swept), *errors.said
-    return [*failures, *said, *_iso_warnings(first), *over_torque.warnings]
+    return [*failures, *said, *_iso_warnings(first, iso), *over_torque.warnings]
 
 
 def _over_torque(
@@ -236,8 +236,15 @@ def _not_repeating(vibrating: Drive, swept: SpeedSweep) -> list[str]:
     ]
 
 
-def _iso_warnings(problem: GearProblem) -> list[str]:
-    """What of the gears K_v of ISO 6336-1 is not made for, or does not see."""
+def _iso_warnings(problem: GearProblem, iso: MethodB) -> list[str]:
+    """What K_v of ISO 6336-1 wants, and what of the gears it is not made for or does not see."""
+    if not iso.has_factor:
+        given = {
+            "dynamics.base_pitch_deviation_um": iso.accuracy.base_pitch_deviation,
+            "dynamics.profile_deviation_um": iso.accuracy.profile_deviation,
+        }
+        missing = " and ".join(key for key, value in given.items() if value is None)
+        return [f"dynamic_factor_iso: no K_v of ISO 6336-1 without the deviations of the gears; give {missing}"]
     found = []
     if (what := outside_range(problem.pair)) is not None:
         found.append(f"dynamic_factor_iso: the tooth stiffness of ISO 6336-1 is not made for these gears: {what}")

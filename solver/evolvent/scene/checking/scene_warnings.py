@@ -44,6 +44,10 @@ def _expected(scene: Scene) -> Iterator[str]:
             "better choice."
         )
     yield from transient_warnings(scene)
+    if scene.dynamics is not None:
+        from evolvent.scene.checking.vibration_rows import vibration_warnings  # Numba takes a second to import
+
+        yield from vibration_warnings(scene, scene.dynamics)
     yield from undercut_warnings(problem)
     yield from modification_warnings(problem)
     yield from tip_edge_warnings(problem)

@@ -34,7 +34,7 @@ def unnamed_backlash(pair: GearPair, given_um: float | None) -> InputProblem | N
     the rounding of a centre distance leaves is none."""
     if given_um is not None or _of_gears(pair) > AGREES:
         return None
-    allowed = "the backlash of the pair, from which flanks part and back flanks touch; gears without any jam"
+    allowed = "the backlash of the pair: without any, back flanks catch the teeth at once, so that none part"
     return InputProblem("dynamics.backlash_um", NOTHING, allowed, f"give {GIVING}")
 
 

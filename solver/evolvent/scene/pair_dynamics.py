@@ -7,6 +7,7 @@ from typing import Literal
 
 from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.pair_model import DriveSettings, geometric_backlash, lacking_room
+from evolvent.gears.problem.load_limits import rounded_up
 from evolvent.scene.backlash import GIVING, unnamed_backlash
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.inertias import moments_of_inertia
@@ -41,10 +42,10 @@ def backlash_problem(scene: Scene) -> InputProblem | None:
     lacking = 1e3 * lacking_room(problem, scene.sweep.positions, settings)
     if lacking == 0.0:
         return None
-    backlash, step = 1e3 * settings.backlash, 10.0 ** (math.floor(math.log10(lacking)) - 2)
-    least = math.ceil((backlash + lacking) / step) * step
+    backlash = 1e3 * settings.backlash
     found = f"{backlash:.4g} µm, {lacking:.3g} µm less than unloaded errors of the flanks want"
-    allowed = f"from {least:.10g} µm on for these flanks at {scene.sweep.positions} positions a pitch"
+    least = rounded_up(backlash + lacking)
+    allowed = f"from {least} µm on for these flanks at {scene.sweep.positions} positions a pitch"
     return InputProblem("dynamics.backlash_um", found, allowed, f"give {GIVING}")
 
 

@@ -86,7 +86,8 @@ def test_room_is_known_before_contact_is_solved(scene: str, settings: tuple[str,
     problem = gear_problem(load_scene(ROOT / f"demos/{scene}.toml", settings))
     pair, angles = problem.pair, np.array(uniform_pitch(problem.pair.pinion.z, POSITIONS).angles)
     error = unloaded_error(RigidFlanks(pair, problem.flanks), angles, problem.torque_on)
-    side, lacking = linear_side(np.ones(POSITIONS), error), lacking_room(problem, POSITIONS, DriveSettings((1, 1), 1, 0))
+    side = linear_side(np.ones(POSITIONS), error)
+    lacking = lacking_room(problem, POSITIONS, DriveSettings((1, 1), 1, 0))
     assert lacking > 5e-5
     with pytest.raises(Jammed) as jammed:
         mirrored_law(side, pair, 0.0)

@@ -43,15 +43,16 @@ from evolvent.run.dynamics.excitation import (
 )
 from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
-from evolvent.run.dynamics.speeds import map_list, sweep_at, sweep_list
+from evolvent.run.dynamics.speeds import WAYS, map_list, sweep_at, sweep_list
 from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
-from evolvent.run.dynamics.vibration_errors import errors_over_speed, vibration_of
+from evolvent.run.dynamics.vibration_errors import SWEEPS, errors_over_speed, vibration_of
 from evolvent.run.dynamics.written_files import OF_DYNAMICS, PORTRAITS, VIBRATION_PICTURE, WATERFALL
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.pair_dynamics import check_backlash, check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
+from evolvent.scene.vibration_limits import doubtful
 
 SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
 
@@ -101,14 +102,14 @@ def _written(
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
     iso = method_b(first.pair, vibrating.model.mass, vibrating.model.load, accuracy(section), moduli)
-    progress.stage(SPEEDS)
     speeds = sweep_list(vibrating.natural_speed, section)
-    swept = sweep_at(vibrating, speeds)
+    progress.stage(SPEEDS, WAYS * len(speeds))
+    swept = sweep_at(vibrating, speeds, progress.advance)
     own, branch = vibration_of(vibrating, swept), list(branch_rows(vibrating, swept))
     found = own.found
     if companion.excitation is not None:
-        progress.stage(SPEEDS_AGAIN)
-    errors = errors_over_speed(own, excitation, companion, first, settings, speeds)
+        progress.stage(SPEEDS_AGAIN, SWEEPS * WAYS * len(speeds))
+    errors = errors_over_speed(own, excitation, companion, first, settings, speeds, progress.advance)
     moving = motions(vibrating, swept, section.histories_rpm)
     over_torque = _over_torque(excitation, first, vibrating, settings, section, progress)
     progress.stage(OUTPUT)
@@ -124,7 +125,8 @@ def _written(
         write_torque_map(folder, over_torque.rows)
     pictures = [*_pictures(vibrating, swept, found, branch, moving, iso, errors), *map_pictures(over_torque)]
     failures += draw(pictures if wanted_output(loads.scene).pictures else [], folder).failures
-    said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
+    said = *doubtful(loads.scene.planned_vibration()), *_warnings(vibrating, settings, known)
+    said = *said, *_not_followed(vibrating, swept), *_branch_warnings(swept)
     said = *said, *_not_repeating(vibrating, swept), *errors.said
     return [*failures, *said, *_iso_warnings(first, iso), *over_torque.warnings]
 

@@ -22,11 +22,12 @@ from evolvent.scene.gear_problem import gear_problem
 from tests.support.gear_cases import spur_scene
 
 LOAD, SPEEDS = 1000.0, np.linspace(3000.0, 6000.0, 5)
+DEVIATING = Accuracy(5.0, 5.0)
 BARS = np.array([1e-4, 2e-4, 3e-4, 2e-4, 1e-4])
 """Of the amplitude [mm]."""
 
 
-def drawn(known: bool, accuracy: Accuracy = Accuracy(5.0, 5.0)) -> Figure:
+def drawn(known: bool, accuracy: Accuracy = DEVIATING) -> Figure:
     """Running through five speeds, with an error or without, on gears of an accuracy."""
     pair, forces = gear_problem(spur_scene()).pair, np.array([LOAD, 2.0 * LOAD])
     error, stiffness = 2e-4 * np.cos(2.0 * np.pi * np.arange(8) / 8), np.full((8, 2), 3e5)
@@ -69,9 +70,9 @@ def test_an_unknown_error_has_none() -> None:
 
 
 def test_no_curve_of_perfect_gears() -> None:
-    """K_v of ISO 6336-1 is drawn for gears with deviations alone; else the foot names the keys that it wants. Once, that
-    of perfect gears was drawn under the standard's name."""
-    for accuracy, curve in ((Accuracy(5.0, 5.0), True), (Accuracy(), False)):
+    """K_v of ISO 6336-1 is drawn for gears with deviations alone; else the foot names the keys that it wants. Once,
+    that of perfect gears was drawn under the standard's name."""
+    for accuracy, curve in ((DEVIATING, True), (Accuracy(), False)):
         figure = drawn(False, accuracy)
         factor, foot = figure.axes[1], " ".join(text.get_text() for text in figure.texts)
         assert (ISO in [str(line.get_label()) for line in factor.lines]) == curve

@@ -176,7 +176,8 @@ def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
 def test_no_factor_of_the_standard_without_deviations(tmp_path: Path) -> None:
     """With f_pb alone: a column without a number, and a sentence that names the missing key."""
     words = [each for each in SETTINGS if "profile_deviation" not in each]
-    one = load_scene(ROOT / "demos/he2022_dynamics.toml", [*QUIET, *words, 'dynamics.mesh="secant"', "dynamics.speeds=2"])
+    few = 'dynamics.mesh="secant"', "dynamics.speeds=2"
+    one = load_scene(ROOT / "demos/he2022_dynamics.toml", [*QUIET, *words, *few])
     (said,) = run_dynamics(one, tmp_path, quiet=True)
     assert said.startswith("dynamic_factor_iso: ") and said.endswith("give dynamics.profile_deviation_um")
     assert {line["dynamic_factor_iso"] for line in rows(tmp_path / "response.csv")} == {"nan"}

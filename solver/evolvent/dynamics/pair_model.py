@@ -76,7 +76,7 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
     critical = 2.0 * math.sqrt(mean * mass)
     model = TorsionalModel(
         mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
-        settings.damped_apart, settings.ground_damping_ratio * critical,
+        settings.damped_apart, settings.ground_damping_ratio * critical, teeth=pair.pinion.z,
     )  # fmt: skip
     return Drive(model, mean, pair.pinion.z, settings)
 

@@ -89,7 +89,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "scene.checking": (
         "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact", "gears.problem", "gears.meshing",
-        "gears.pressure", "dynamics", "dynamics.oscillator", "strength.fatigue", "scene", "scene.schema",
+        "gears.pressure", "dynamics", "strength.fatigue", "scene", "scene.schema",
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (
@@ -157,7 +157,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "run.dynamics.transient": (
         "meshes", "meshes.gears", "contact.transient.time_schemes", "fem.backend", "fem.parallel", "gears.problem",
         "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema",
-        "scene.checking", "results.archive", "results.drawing", "dynamics", "dynamics.transient",
+        "scene.checking", "results.archive", "results.drawing", "dynamics", "dynamics.modes", "dynamics.transient",
         "dynamics.transient.step_lengths", "dynamics.transient.starts", "dynamics.results.transient",
         "dynamics.figures", "run",
     ),

@@ -21,6 +21,30 @@ def polar_moment(gear: GearParameters, density: float) -> float:
 
     density: [kg/m³]. ∫ρr² dV = ρ b ∮ r⁴/4 dθ along the section's rim. 1 kg·m² is 1000 t·mm².
     """
+    moment = _disc_moment(gear, _section(gear), gear.bore_diameter)
+    if (web := gear.thin_web) is not None:
+        outer, inner = (0.5 * diameter for diameter in gear.web_diameters)
+        moment -= (gear.face_width - web.thickness) * np.pi * (outer**4 - inner**4) / 2.0
+    return float(TONNE_PER_MM3 * density * moment)
+
+
+def teeth_moment(gear: GearParameters, density: float) -> float:
+    """The same of the teeth alone, outside the root circle."""
+    return float(TONNE_PER_MM3 * density * _disc_moment(gear, _section(gear), gear.root_diameter))
+
+
+def solid_moment(gear: GearParameters, density: float) -> float:
+    """The same of a solid disc of the tip diameter and the face width."""
+    return float(TONNE_PER_MM3 * density * gear.face_width * np.pi * gear.tip_diameter**4 / 32.0)
+
+
+def _disc_moment(gear: GearParameters, section: float, bore: float) -> float:
+    """[mm⁵] of a disc with teeth and a bore [mm]. section: ∮ r⁴ dθ of its rim [mm⁴]."""
+    return float(gear.face_width * (section - 2.0 * np.pi * (bore / 2.0) ** 4) / 4.0)
+
+
+def _section(gear: GearParameters) -> float:
+    """∮ r⁴ dθ [mm⁴] along the rim of the transverse section."""
     profile, t = Profile(gear), np.linspace(0.0, 1.0, POINTS)
     curves = [profile.fillet(t), profile.involute_at_roll(np.linspace(*profile.roll_lengths, POINTS))]
     if profile.edge is not None:
@@ -28,12 +52,7 @@ def polar_moment(gear: GearParameters, density: float) -> float:
     half = sum(_swept(points) for points in curves)
     root, _, tip = profile.radii
     half += root**4 * (profile.sector_angle - profile.root_angle) + tip**4 * profile.tip_angle
-    whole = 2.0 * gear.z * half - 2.0 * np.pi * (gear.bore_diameter / 2.0) ** 4
-    moment = gear.face_width * whole / 4.0
-    if (web := gear.thin_web) is not None:
-        outer, inner = (0.5 * diameter for diameter in gear.web_diameters)
-        moment -= (gear.face_width - web.thickness) * np.pi * (outer**4 - inner**4) / 2.0
-    return float(TONNE_PER_MM3 * density * moment)
+    return float(2.0 * gear.z * half)
 
 
 def equivalent_mass(pair: GearPair, inertias: tuple[float, float]) -> float:

@@ -33,11 +33,12 @@ SLOW, FAST = 5.0, 10.0
 
 @dataclass(frozen=True)
 class Accuracy:
-    """What Method B asks of flanks beside the geometry. The defaults are perfect gears: then K_v has B_k alone."""
+    """What Method B asks of flanks beside the geometry. Without both deviations there is no K_v: that of perfect gears,
+    which has B_k alone, is none of real ones."""
 
-    base_pitch_deviation: float = 0.0
-    """f_pb, the larger of both gears [µm]."""
-    profile_deviation: float = 0.0
+    base_pitch_deviation: float | None = None
+    """f_pb, the larger of both gears [µm]; None where it is not known."""
+    profile_deviation: float | None = None
     """f_fα, likewise [µm]."""
     tolerance_class: int | None = None
     """Of ISO 1328-1, the coarser of both gears; None: so fine that tip relief counts, below 6."""
@@ -112,6 +113,11 @@ class MethodB:
     """Of the flanks."""
 
     @property
+    def has_factor(self) -> bool:
+        """Whether K_v is known: both deviations are."""
+        return None not in (self.accuracy.base_pitch_deviation, self.accuracy.profile_deviation)
+
+    @property
     def main_resonance(self) -> tuple[float, float]:
         """Resonance ratios between which it is, from N_S (Eqs 11, 12)."""
         return (0.5 + 0.35 * math.sqrt(min(self.line_load / LIGHT, 1.0)), MAIN)
@@ -128,13 +134,16 @@ class MethodB:
         return speed / self.resonance_speed
 
     def factor(self, speed: float) -> float:
-        """K_v at a speed of the pinion [r/min]."""
+        """K_v at a speed of the pinion [r/min]; NaN where a deviation is not known."""
+        deviations = self.accuracy.base_pitch_deviation, self.accuracy.profile_deviation
+        if deviations[0] is None or deviations[1] is None:
+            return math.nan
         N, (begin, end) = self.ratio(speed), self.main_resonance
         velocity = math.pi * self.pitch_diameter * speed / 60e3
         C_v1, C_v2, C_v3, C_v4, C_v5, C_v6, C_v7 = coefficients(self.total_contact_ratio)
         B_p, B_f = (
             self.single_stiffness * (each - running_in(each, self.accuracy, velocity)) / self.line_load
-            for each in (self.accuracy.base_pitch_deviation, self.accuracy.profile_deviation)
+            for each in (deviations[0], deviations[1])
         )
         if begin >= N:
             return 1.0 + N * (C_v1 * B_p + C_v2 * B_f + C_v3 * self.relief_term)

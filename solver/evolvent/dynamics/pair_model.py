@@ -11,17 +11,18 @@ import numpy as np
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.gear_inertia import equivalent_mass
-from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side
+from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side, with_chords
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
-CERTAIN = 1e-3
-"""Overlap [mm] that is no spline's."""
+NANOMETRE = 1e-6
+"""To which unloaded errors are right [mm]; no backlash is asked for less."""
 OVERLAP = 0.01
-"""Of both sides of the teeth, over the static deflection, that a spline through their errors makes by itself."""
+"""Of both sides of the teeth, over the static deflection, that is taken for the inaccuracy of their errors."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ class DriveSettings:
     damping_ratio: float
     """Of the mesh, over the critical one at the mean stiffness, see `Drive`: a series compliance lowers the damping."""
     backlash: float
-    """Along the line of action, from flank to flank [mm]; a hundredth of the static deflection may be added to leave
-    room for the splines through both sides' errors."""
+    """Along the line of action, from flank to flank [mm]. Where straight lines between both sides' errors have room and
+    splines through them have not, what these lack is added."""
     damped_apart: bool = False
     """Whether this damping acts in free flight, too."""
     ground_damping_ratio: float = 0.0
@@ -75,21 +76,20 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
     critical = 2.0 * math.sqrt(mean * mass)
     model = TorsionalModel(
         mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
-        settings.damped_apart, settings.ground_damping_ratio * critical,
+        settings.damped_apart, settings.ground_damping_ratio * critical, teeth=pair.pinion.z,
     )  # fmt: skip
     return Drive(model, mean, pair.pinion.z, settings)
 
 
-def check_room(problem: GearProblem, positions: int, settings: DriveSettings) -> None:
-    """Raises Jammed where unloaded errors at so many positions of the pitch leave no room between both sides of the
-    teeth: by more than a micrometre, so that it is known before any contact is solved. `drive` sees the rest."""
+def lacking_room(problem: GearProblem, positions: int, settings: DriveSettings) -> float:
+    """Backlash [mm] that unloaded errors at so many positions of the pitch want beyond the given one, by geometry
+    alone; 0 where both sides of the teeth have room. Where it is 0, `drive` raises no Jammed: neither on these flanks,
+    whose errors it joins by the same splines, nor on worn ones, from which material is only taken away."""
     angles = np.array(uniform_pitch(problem.pair.pinion.z, positions).angles)
     error = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
-    try:
-        _mirrored(linear_side(np.ones(len(error)), error), problem.pair, settings)
-    except Jammed as jammed:
-        if jammed.overlap > CERTAIN:
-            raise
+    side, begin = linear_side(np.ones(len(error)), error), _begin(problem.pair, angles)
+    overlap = max(_overlap(each, problem.pair, settings, begin) for each in (side, with_chords(side)))
+    return overlap if overlap > NANOMETRE else 0.0
 
 
 def geometric_backlash(pair: GearPair) -> float:
@@ -102,21 +102,30 @@ def geometric_backlash(pair: GearPair) -> float:
 
 
 def _law(pair: GearPair, mesh: MeshExcitation, load: float, settings: DriveSettings) -> MeshLaw:
-    """Of both sides of the teeth. Raises Jammed where they overlap by more than the splines through their errors can
-    have it; less is added to the backlash."""
-    if settings.mesh == "force_surface":
-        side, begin = mesh.force_surface(), float(mesh.loaded.angles[0]) * pair.pinion.z / (2.0 * np.pi)
-        try:
-            return _mirrored(side, pair, settings, begin)
-        except Jammed as jammed:
-            if jammed.overlap > OVERLAP * float(np.mean(mesh.under(load)[0])):
-                raise
-            return mirrored_law(side, pair, settings.backlash + jammed.overlap, begin)
-    return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)
-
-
-def _mirrored(side: MeshSide, pair: GearPair, settings: DriveSettings, begin: float = 0.0) -> MeshLaw:
-    """Both sides, each with its own room, where the mesh has them. begin: phase of the first position."""
+    """Of both sides of the teeth. Raises Jammed where they overlap between straight lines, too; what splines alone lack
+    is added to the backlash."""
     if settings.mesh != "force_surface":
-        return paper_law(side, settings.backlash)
-    return mirrored_law(side, pair, settings.backlash, begin)
+        return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)
+    side, begin = mesh.force_surface(), _begin(pair, mesh.loaded.angles)
+    overlap = _overlap(side, pair, settings, begin)
+    allowed = OVERLAP * float(np.mean(mesh.under(load)[0]))
+    if overlap > 0.0 and (certain := _overlap(with_chords(side), pair, settings, begin)) > allowed:
+        raise Jammed(max(certain, overlap))
+    return mirrored_law(side, pair, settings.backlash + overlap, begin)
+
+
+def _begin(pair: GearPair, angles: Floats) -> float:
+    """Phase of the first of some positions (n,) [rad]."""
+    return float(angles[0]) * pair.pinion.z / (2.0 * np.pi)
+
+
+def _overlap(side: MeshSide, pair: GearPair, settings: DriveSettings, begin: float) -> float:
+    """By which both sides of the teeth overlap [mm]; 0 where they have room. begin: phase of the first position."""
+    try:
+        if settings.mesh == "force_surface":
+            mirrored_law(side, pair, settings.backlash, begin)
+        else:
+            paper_law(side, settings.backlash)
+    except Jammed as jammed:
+        return jammed.overlap
+    return 0.0

@@ -36,6 +36,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import operating_point
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import one_mesh_reason, skipped, switched_off, wanted_output
+from evolvent.scene.vibration_limits import doubtful
 
 NOTHING_LEFT = "complete: nothing to compute, tables and pictures are written again"
 """What is said of a resumed run that was finished."""
@@ -71,6 +72,8 @@ def run_scene(
         point, vibrating = operating_point(solved), None
         with run_context(folder, comm, resume, quiet, begin, prepare) as run:  # no file has been touched yet
             if point is not None:
+                for sentence in doubtful(solved.planned_vibration()):
+                    run.log.warning(sentence)
                 vibrating = UnderMeshForce(point, prepare or prepare_model, partial(run.progress.stage, VIBRATION))
                 run = replace(run, prepare=vibrating)
             _log_beginning(run, solved)

@@ -6,7 +6,10 @@ import math
 from typing import Literal
 
 from evolvent.dynamics.operating_point import OperatingPoint
-from evolvent.dynamics.pair_model import DriveSettings, geometric_backlash
+from evolvent.dynamics.pair_model import DriveSettings, geometric_backlash, lacking_room
+from evolvent.gears.problem.load_limits import rounded_up
+from evolvent.scene.backlash import GIVING, unnamed_backlash
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
@@ -23,6 +26,29 @@ def check_positions(scene: Scene) -> None:
         raise SceneError([InputProblem("sweep.positions", str(found), allowed, "20 are usual, 40 show each step")])
 
 
+def check_backlash(scene: Scene) -> None:
+    """Raises SceneError where nobody has named a backlash, or the unloaded errors of the flanks leave no room in it:
+    known by geometry alone, before any contact is solved."""
+    if problem := backlash_problem(scene):
+        raise SceneError([problem])
+
+
+def backlash_problem(scene: Scene) -> InputProblem | None:
+    """Why the vibration of a scene cannot be computed with its backlash; None where it can."""
+    section, problem = scene.dynamics or DynamicsSection(), gear_problem(scene)
+    if missing := unnamed_backlash(problem.pair, section.backlash_um):
+        return missing
+    settings = drive_settings(problem.pair, section)
+    lacking = 1e3 * lacking_room(problem, scene.sweep.positions, settings)
+    if lacking == 0.0:
+        return None
+    backlash = 1e3 * settings.backlash
+    found = f"{backlash:.4g} µm, {lacking:.3g} µm less than unloaded errors of the flanks want"
+    least = rounded_up(backlash + lacking)
+    allowed = f"from {least} µm on for these flanks at {scene.sweep.positions} positions a pitch"
+    return InputProblem("dynamics.backlash_um", found, allowed, f"give {GIVING}")
+
+
 def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
     """What the section says, with what follows from the gears where it says nothing."""
     backlash = geometric_backlash(pair) if section.backlash_um is None else 1e-3 * section.backlash_um
@@ -35,11 +61,12 @@ def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
 
 def operating_point(scene: Scene) -> OperatingPoint | None:
     """Under whose mesh force the contact is computed; None where it is computed under the constant torque.
-    Raises SceneError as `check_positions`."""
+    Raises SceneError as `check_positions` and `check_backlash`."""
     section = scene.dynamics
     if section is None or section.operating_rpm is None:
         return None
     check_positions(scene)
+    check_backlash(scene)
     shares = tuple(sorted(percent / 100.0 for percent in section.torque_percents))
     settings = drive_settings(scene.gear_pair(), section)
     of_several: Literal["mean", "largest"] = "largest" if scene.wear is None else "mean"

@@ -31,6 +31,7 @@ from evolvent.scene.schema.output import OutputSection, SkipSection
 from evolvent.scene.schema.section import SceneSection, key
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.schema.wear import WearSection
+from evolvent.scene.vibration_limits import PlannedVibration, impossible
 from evolvent_meshes.csv_tables import TableError
 from evolvent_meshes.gears.member import MemberName
 from evolvent_meshes.gears.pair import GearPair
@@ -89,6 +90,12 @@ class Scene(SceneSection):
     def _backlash_follows(self) -> Self:
         given = None if self.dynamics is None else self.dynamics.backlash_um
         if given is not None and (problem := backlash_conflict(self.gear_pair(), given)):
+            raise validation_error(problem)
+        return self
+
+    @model_validator(mode="after")
+    def _vibration_is_possible(self) -> Self:
+        if (self.dynamics or self.transient) and (problem := impossible(self.planned_vibration())):
             raise validation_error(problem)
         return self
 
@@ -176,6 +183,14 @@ class Scene(SceneSection):
         """Hertz contact of this scene's gears, materials and torque."""
         pair, torque = self.gear_pair(), 1e3 * self.load.torque_Nm
         return HertzEstimate.of(pair, self.materials(), torque if self.load.on == "pinion" else torque / pair.ratio)
+
+    def planned_vibration(self) -> PlannedVibration:
+        """What the limits of [dynamics] and [transient] depend on."""
+        pair, (pinion, wheel) = self.gear_pair(), self.materials()
+        force = self.hertz_estimate().pinion_torque / pair.pinion.base_radius
+        return PlannedVibration(
+            pair, force, (pinion.youngs_modulus, wheel.youngs_modulus), self.dynamics, self.transient
+        )
 
     def materials(self) -> tuple[Material, Material]:
         """Materials of (pinion, wheel)."""

@@ -18,7 +18,7 @@ MASS, FORCE = 0.7701e-3, 2412.0  # t, N: He's pair
 
 
 def he(accuracy: Accuracy | None = None, force: float = FORCE) -> MethodB:
-    return method_b(he_pair(), MASS, force, accuracy or Accuracy())
+    return method_b(he_pair(), MASS, force, accuracy or Accuracy(0.0, 0.0))
 
 
 def relieved(pinion: float, wheel: float) -> GearPair:
@@ -48,6 +48,16 @@ def test_ranges_of_perfect_gears() -> None:
     assert found.main_resonance == (0.85, 1.15)
     for N, factor in ((0.4, 1.092), (0.85, 1.1955), (0.86, 1.9), (1.15, 1.9), (1.325, (1.9 + end) / 2.0), (2.0, end)):
         assert found.factor(N * ratio) == pytest.approx(factor, rel=1e-9)
+
+
+@pytest.mark.parametrize("accuracy", [Accuracy(), Accuracy(8.0), Accuracy(profile_deviation=6.0)])
+def test_no_factor_without_deviations(accuracy: Accuracy) -> None:
+    """K_v of perfect gears, down to 0.77 above resonance, is none of real ones: without both f_pb and f_fα it is not
+    known at any speed, stiffness and resonance speed are."""
+    found = he(accuracy)
+    assert not found.has_factor
+    assert all(np.isnan(found.factor(N * found.resonance_speed)) for N in (0.4, 1.0, 1.3, 2.0))
+    assert found.resonance_speed == he().resonance_speed and he().has_factor
 
 
 def test_deviations_count_over_the_line_load() -> None:

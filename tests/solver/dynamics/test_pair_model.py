@@ -7,13 +7,18 @@ import pytest
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
-from evolvent.dynamics.oscillator.mesh_law import Jammed
+from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.oscillator.mesh_law import Jammed, linear_side
 from evolvent.dynamics.oscillator.response import response
 from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
-from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
+from evolvent.dynamics.pair_model import Drive, DriveSettings, drive, lacking_room
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
+from tests.support.checkout import ROOT
 
 POSITIONS, STIFFNESS, LOAD = 20, 250e3, 2500.0
 STATIC = LOAD / STIFFNESS
@@ -35,8 +40,8 @@ def driven(error: Floats, backlash: float, first: int = 0) -> Drive:
 
 
 def test_relief_leaves_room_without_backlash() -> None:
-    """A relief that sets in suddenly: the spline through it falls below 0, on both sides at once, but by less than a
-    hundredth of the static deflection: the pair runs without backlash."""
+    """A relief that sets in suddenly: the spline through it falls below 0, on both sides at once, straight lines do
+    not: the pair runs without backlash."""
     relief = 0.03 * STATIC * (np.arange(POSITIONS) < 4)
     law = driven(relief, 0.0).model.law
     with pytest.raises(Jammed) as jammed:
@@ -67,3 +72,36 @@ def test_positions_may_begin_anywhere() -> None:
     assert max(each.behind for each in found[0]) > 0.01
     one, other = ([each.largest_force for each in runs] for runs in found)
     assert other == pytest.approx(one, rel=1e-7)
+
+
+
+@pytest.mark.parametrize(("scene", "settings"), [
+    ("he2022", ("pinion.tip_relief_um=20", "wheel.tip_relief_um=20")),  # kinks beside which a spline rings
+    ("yang2022", ("pair.misalignment_um=30", "mesh.level=quick")),  # flanks that stand proud
+])  # fmt: skip
+def test_room_is_known_before_contact_is_solved(scene: str, settings: tuple[str, ...]) -> None:
+    """Without backlash the flanks lack room by their unloaded errors alone: the splines of `drive` overlap by the same
+    figure to the nanometre, and with so much backlash they have room as they are. With a nanometre less they overlap.
+    Once, room for a micrometre less was taken for room, and `drive` failed after all contact had been solved."""
+    problem = gear_problem(load_scene(ROOT / f"demos/{scene}.toml", settings))
+    pair, angles = problem.pair, np.array(uniform_pitch(problem.pair.pinion.z, POSITIONS).angles)
+    error = unloaded_error(RigidFlanks(pair, problem.flanks), angles, problem.torque_on)
+    side = linear_side(np.ones(POSITIONS), error)
+    lacking = lacking_room(problem, POSITIONS, DriveSettings((1, 1), 1, 0))
+    assert lacking > 5e-5
+    with pytest.raises(Jammed) as jammed:
+        mirrored_law(side, pair, 0.0)
+    assert lacking == pytest.approx(jammed.value.overlap, abs=1e-6)
+    mirrored_law(side, pair, lacking)
+    assert lacking_room(problem, POSITIONS, DriveSettings((1, 1), 1, lacking)) == 0.0
+    assert lacking_room(problem, POSITIONS, DriveSettings((1, 1), 1, lacking - 2e-6)) > 0.0
+
+
+def test_worn_flanks_keep_their_room() -> None:
+    """Flanks with room that wear in places: the spline through their errors rings by 2 % of the static deflection and
+    more, but material is only taken away: the pair runs on. Once, a block of wear ended with Jammed."""
+    worn = 0.3 * STATIC * (np.arange(POSITIONS) % 7 < 2)
+    pair = driven(worn, 0.0)
+    with pytest.raises(Jammed) as jammed:
+        mirrored_law(pair.model.law.front, PAIR, 0.0)
+    assert jammed.value.overlap > 0.02 * STATIC

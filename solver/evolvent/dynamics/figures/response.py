@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -24,6 +23,7 @@ LEAST_SHARE, FAR_ABOVE = 5.0, 2.0
 """End of the axis of time out of contact at the least [%]; steady states above the runs from which on the amplitude's
 axis leaves them out, over the largest amplitude of the runs."""
 ISO = "K_v of ISO 6336-1"
+NO_ISO = f"No {ISO}: it wants dynamics.base_pitch_deviation_um and dynamics.profile_deviation_um."
 BAND = (
     "Its error: estimated, of running up, by the mesh and by the spacing of positions; large beside a jump that moves "
     "with them."
@@ -46,7 +46,7 @@ def response_figure(
 ) -> Figure:  # fmt: skip
     """Equivalent amplitude, dynamic factor with that of ISO 6336-1, and separated share over the speed, up and down,
     and the unstable steady states between."""
-    speeds, accuracy = np.array([speed_of(drive, float(period)) for period in swept.periods]), iso.accuracy
+    speeds = np.array([speed_of(drive, float(period)) for period in swept.periods])
     figure = sheet(
         "Vibration over the speed: running up, running down, and the steady states between",
         f"Natural speed {drive.natural_speed:.0f} r/min at the mean {_kind(drive)} stiffness of "
@@ -70,7 +70,8 @@ def response_figure(
     alike = all(run.repeats == 1 for run in (*swept.up, *swept.down))
     hollow = "" if alike else " Hollow: a motion that does not repeat with every mesh."
     _draw_branch(amplitude, branch)
-    _draw_iso(factor, speeds, iso)
+    if iso.has_factor:
+        _draw_iso(factor, speeds, iso)
     for axes in (amplitude, factor, apart):
         for part in SUPERHARMONICS:
             axes.axvline(drive.natural_speed / part, color=FAINT, lw=0.8, ls=":", zorder=0)
@@ -84,15 +85,13 @@ def response_figure(
     amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
     factor.set_ylabel("largest mesh force\nover the static one")
-    factor.legend(*_iso_alone(factor), loc="upper right")
     apart.set_ylabel("out of contact\n[% of the time]")
     apart.set_xlabel("speed of the pinion [r/min]")
     amplitude.legend(loc="upper right")
     foot(
         figure,
         "Dotted: the natural speed and its half, third and quarter." + hollow + beyond,
-        f"K_v of ISO 6336-1, Method B: for base pitch and profile deviations of {accuracy.base_pitch_deviation:.3g} "
-        f"and {accuracy.profile_deviation:.3g} µm; shaded: its main resonance around {iso.resonance_speed:.0f} r/min.",
+        _iso_words(iso),
         *([BAND] if np.isfinite(errors.dynamic_factor["up"]).any() else []),
     )
     return figure
@@ -126,12 +125,18 @@ def _draw_iso(axes: Axes, speeds: Floats, iso: MethodB) -> None:
     fine = np.linspace(speeds[0], speeds[-1], 1000)
     axes.plot(fine, [iso.factor(float(speed)) for speed in fine], color=INK, lw=0.9, label=ISO)
     axes.axvspan(begin, end, color=FAINT, alpha=0.12, lw=0.0, zorder=0)
-
-
-def _iso_alone(axes: Axes) -> tuple[list[Artist], list[str]]:
-    """Of a legend: the other curves are named in the panel above."""
     handles, labels = axes.get_legend_handles_labels()
-    return [handles[labels.index(ISO)]], [ISO]
+    axes.legend([handles[labels.index(ISO)]], [ISO], loc="upper right")  # the panel above names the other curves
+
+
+def _iso_words(iso: MethodB) -> str:
+    """What the curve of ISO 6336-1 is for, or what it wants."""
+    if not iso.has_factor:
+        return NO_ISO
+    return (
+        f"{ISO}, Method B: for base pitch and profile deviations of {iso.accuracy.base_pitch_deviation:.3g} and "
+        f"{iso.accuracy.profile_deviation:.3g} µm; shaded: its main resonance around {iso.resonance_speed:.0f} r/min."
+    )
 
 
 def _folds(drive: Drive, swept: SpeedSweep) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -58,31 +59,36 @@ class ModeChoice:
     least: int = 0
     """At least so many of each harmonic, whatever their frequency."""
 
-    def of(self, sector: SectorMatrices, sectors: int) -> RingModes:
-        """The modes. Raises NotPositiveDefinite, OutOfMemory."""
+    def of(
+        self, sector: SectorMatrices, sectors: int, computed: Callable[[], None] = lambda: None
+    ) -> RingModes:
+        """The modes. computed: called after each harmonic. Raises NotPositiveDefinite, OutOfMemory."""
         if self.per_harmonic is not None:
-            return ring_modes(sector, sectors, [self.per_harmonic for _ in harmonics(sectors)])
+            return ring_modes(sector, sectors, [self.per_harmonic for _ in harmonics(sectors)], computed)
         try:
             below = modes_below(sector, sectors, self.highest)
-            return ring_modes(sector, sectors, [max(count, self.least) for count in below])
+            return ring_modes(sector, sectors, [max(count, self.least) for count in below], computed)
         except NotPositiveDefinite:  # a sector between held cut faces vibrates below it, too
-            return self._by_search(sector, sectors)
+            return self._by_search(sector, sectors, computed)
 
-    def _by_search(self, sector: SectorMatrices, sectors: int) -> RingModes:
+    def _by_search(self, sector: SectorMatrices, sectors: int, computed: Callable[[], None]) -> RingModes:
         """More and more of each harmonic, until one beyond the highest is among them."""
         count = FIRST
         while True:
-            found = ring_modes(sector, sectors, [count for _ in harmonics(sectors)])
+            found = ring_modes(sector, sectors, [count for _ in harmonics(sectors)], computed)
             beyond = found.harmonic[found.frequencies > self.highest]
             if count >= sector.stiffness.shape[0] // 2 or len(np.unique(beyond)) == len(harmonics(sectors)):
                 return found.some((found.frequencies <= self.highest) | (found.rank < self.least))
             count *= 2
 
 
-def gear_modes(body: GearBody, choice: ModeChoice, mesh: MeshData | None = None) -> GearModes:
+def gear_modes(
+    body: GearBody, choice: ModeChoice, mesh: MeshData | None = None, computed: Callable[[], None] = lambda: None
+) -> GearModes:
     """Modes of a condensed gear.
 
     mesh: of another sector of it, whose modes are interpolated to the flank's nodes; None: on its own, exactly.
+    computed: called after each harmonic of the ring.
 
     Raises NotPositiveDefinite, OutOfMemory, CompileError, CacheError.
     """
@@ -90,7 +96,7 @@ def gear_modes(body: GearBody, choice: ModeChoice, mesh: MeshData | None = None)
     if mesh is not None:
         # traction-free there: the modes' own flux on a coarse flank is nothing but its error
         sector, traction, to_flank = mesh, None, FlankLattice.of(surface_of(mesh, "flank").points)
-    found, moment, spun, functionals = _on_mesh(body, sector, traction, choice)
+    found, moment, spun, functionals = _on_mesh(body, sector, traction, choice, computed)
     return_free_memory()  # of the factors, gigabytes; time steps want less at once
     if to_flank is not None:
         across = sp.kron(to_flank.interpolation(body.flank.points), sp.eye(body.d)).tocsr()
@@ -99,8 +105,9 @@ def gear_modes(body: GearBody, choice: ModeChoice, mesh: MeshData | None = None)
 
 
 def _on_mesh(
-    body: GearBody, sector_of: MeshData, traction: NitscheTraction | None, choice: ModeChoice
-) -> tuple[RingModes, float, Floats, Numbers]:
+    body: GearBody, sector_of: MeshData, traction: NitscheTraction | None, choice: ModeChoice,
+    computed: Callable[[], None],
+) -> tuple[RingModes, float, Floats, Numbers]:  # fmt: skip
     """Modes, moment of inertia and `GearModes.spun` on a sector mesh, and the modes at its flank's functionals."""
     elastic, pitch, N = sector_body(sector_of, body.material, body.member), 2.0 * np.pi / body.gear.z, body.gear.z
     parts = sector_parts(elastic, surface_of(sector_of, "flank"), traction, pitch)
@@ -112,7 +119,7 @@ def _on_mesh(
     about = sp.kron(sp.eye(len(low) // body.d), turn(pitch, body.d)).tocsr()
     stiffness, mass = (matrix.tocsr()[parts.free][:, parts.free] for matrix in (parts.stiffness, M))
     sector = SectorMatrices(stiffness, mass, CyclicFaces(interior, low, high, about))
-    found = choice.of(sector, N)
+    found = choice.of(sector, N, computed)
     r = spin(sector_of.points[:, : body.d], np.zeros(body.d)).ravel()
     pushed = np.real(found.shapes.T @ (M @ r)[parts.free])
     spun = np.where(found.harmonic == 0, N * pushed, 0.0)

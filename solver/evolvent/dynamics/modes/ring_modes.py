@@ -7,7 +7,7 @@ sectors s; k = 0 and k = N/2 have single ones, √(1/N) φ e^{iks2π/N}. φ is a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,8 +94,11 @@ def modes_below(sector: SectorMatrices, sectors: int, highest: float) -> list[in
     return [shifted.negative(_phase(k, sectors)) for k in harmonics(sectors)]
 
 
-def ring_modes(sector: SectorMatrices, sectors: int, counts: Sequence[int]) -> RingModes:
-    """The lowest modes of each harmonic, so many, pairs counted once. Raises NotPositiveDefinite, OutOfMemory."""
+def ring_modes(
+    sector: SectorMatrices, sectors: int, counts: Sequence[int], computed: Callable[[], None] = lambda: None
+) -> RingModes:
+    """The lowest modes of each harmonic, so many, pairs counted once. computed: called after each harmonic. Raises
+    NotPositiveDefinite, OutOfMemory."""
     size = sector.stiffness.shape[0]
     cyclic = CyclicStiffness(sector.stiffness, sector.faces) if any(counts) else None
     frequencies, harmonic, imaginary, shapes = [], [], [], []
@@ -110,6 +113,7 @@ def ring_modes(sector: SectorMatrices, sectors: int, counts: Sequence[int]) -> R
         shapes.append(np.repeat(whole, copies, axis=1))
         harmonic.append(np.full(copies * len(ω), k))
         imaginary.append(np.tile(np.arange(copies), len(ω)))
+        computed()
     if not shapes:
         nothing = np.zeros(0, dtype=np.int64)
         return RingModes(sectors, np.zeros(0), nothing, nothing, np.zeros((size, 0)))

@@ -200,13 +200,13 @@ def _points(track: _Track, start: SteadyState, last_period: float) -> Iterator[t
         yield following.state, False
         if track.model.escaped(following.state.state):
             raise NoSteadyState(
-                f"branch of steady states at a mesh period of {following.state.period:.6g} s: wanted motions of a gear "
+                f"branch of steady states at {track.model.place(following.state.period)}: wanted motions of a gear "
                 f"pair, found one whose mesh deflects by {BEYOND_MEASURE:g} times the static deflection and its "
                 "unloaded error, and growing; give more damping"
             )
         here = following
     raise NoSteadyState(
-        f"branch of steady states at a mesh period of {here.state.period:.6g} s: wanted its end within {MOST_POINTS} "
+        f"branch of steady states at {track.model.place(here.state.period)}: wanted its end within {MOST_POINTS} "
         "points, found none; ask for a narrower range of speeds, or give more damping"
     )
 
@@ -220,7 +220,7 @@ def _next(track: _Track, here: _Point, length: float) -> tuple[_Point, float]:
             return found[0], length * (2.0 if found[1] <= 3 else 1.0)
         length *= 0.5
     raise NoSteadyState(
-        f"branch of steady states at a mesh period of {here.state.period:.6g} s: wanted a next one, found none however "
+        f"branch of steady states at {track.model.place(here.state.period)}: wanted a next one, found none however "
         "near; ask for speeds on one side of it, or give more damping"
     )
 
@@ -237,7 +237,7 @@ def _between(track: _Track, before: _Point, after: _Point, value: Callable[[_Poi
         found = track.onto(before, length)
         if found is None:
             raise NoSteadyState(
-                f"branch of steady states at a mesh period of {before.state.period:.6g} s: wanted the points around a "
+                f"branch of steady states at {track.model.place(before.state.period)}: wanted the points around a "
                 "fold or the last speed, found none; ask for other speeds, or give more damping"
             )
         return found[0]

@@ -136,6 +136,14 @@ def behind(side: MeshSide, backlash: float) -> MeshSide:
     return side._replace(sign=-side.sign, offset=offset)
 
 
+def with_chords(side: MeshSide) -> MeshSide:
+    """The side with e(τ) straight between the ends of its phase intervals, where a spline may ring."""
+    starts = side.offset[:, 0]
+    offset = np.zeros_like(side.offset)
+    offset[:, 0], offset[:, 1] = starts, (np.roll(starts, -1) - starts) / np.diff(side.phases)
+    return side._replace(offset=offset)
+
+
 def mirrored(side: MeshSide, meeting: float, backlash: float) -> MeshSide:
     """The back flanks as mirror images of `side`: at phase τ they stand as those do at `meeting` − τ.
 

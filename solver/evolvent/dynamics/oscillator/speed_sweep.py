@@ -7,7 +7,7 @@ a doubled period, the motion is integrated in time until it repeats, and the bra
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -81,18 +81,23 @@ class SpeedSweep:
     """Of one that runs down slowly, at each speed; in ascending order, too."""
 
 
-def sweep_speeds(model: TorsionalModel, periods: Floats, beyond: tuple[float, float] | None = None) -> SpeedSweep:
+def sweep_speeds(
+    model: TorsionalModel, periods: Floats, beyond: tuple[float, float] | None = None,
+    computed: Callable[[], None] = lambda: None,
+) -> SpeedSweep:  # fmt: skip
     """Steady states at mesh periods (n,) [s], two at least, descending.
 
     beyond: longest and shortest mesh period from and to which the branch is followed, where those of the speeds lie
     within: a branch that turns back within the speeds may leave them on its way.
+    computed: called twice a speed, once its motion running up and once that running down are known.
 
     Raises NoSteadyState where there is none to begin with, neither at the longest nor at the shortest of them.
     """
     longest, shortest = beyond or (0.0, np.inf)
     begin, end = max(longest, float(periods[0])), min(shortest, float(periods[-1]))
     known = _Steady(model, np.asarray(periods, dtype=float), (begin, end), _branch(model, begin, end))
-    up, down = _run(known, range(len(periods))), _run(known, range(len(periods))[::-1])[::-1]
+    numbers = range(len(periods))
+    up, down = _run(known, numbers, computed), _run(known, numbers[::-1], computed)[::-1]
     return SpeedSweep(known.periods, known.branch, tuple(map(tuple, known.coexisting)), tuple(up), tuple(down))
 
 
@@ -158,12 +163,14 @@ class _Steady:
             yield OnBranch(float(i) + share, steady_state(self.model, period, start))
 
 
-def _run(known: _Steady, order: range) -> list[Running]:
-    """The motions of a pair that takes the speeds one after the other, in this order of their numbers."""
+def _run(known: _Steady, order: range, computed: Callable[[], None]) -> list[Running]:
+    """The motions of a pair that takes the speeds one after the other, in this order of their numbers. computed: called
+    after each."""
     stable = [each for each in known.coexisting[order[0]] if each.state.stable]
     first = float(known.periods[order[0]])
     found = [_start(known.model, first, stable if order.step > 0 else stable[::-1])]
     for number in order[1:]:
+        computed()
         before, period = found[-1], float(known.periods[number])
         along = None if before.place is None else _along(known.branch, before.place, known.coexisting[number])
         if along is not None:
@@ -173,6 +180,7 @@ def _run(known: _Steady, order: range) -> list[Running]:
         most = decay_periods(known.model, period) if before.place is None else MOST_PERIODS
         motion = settled(known.model, period, _left_with(known.model, before), most)
         found.append(_landed(known, motion, number, left_at))
+    computed()
     return found
 
 

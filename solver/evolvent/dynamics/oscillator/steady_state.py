@@ -102,7 +102,7 @@ def steady_state(model: TorsionalModel, period: float, start: Floats) -> SteadyS
             break
         state, found, change = trial, then, change_then
     raise NoSteadyState(
-        f"steady state of a mesh period of {period:.6g} s: wanted a residual of {TOLERANCE}, found "
+        f"steady state at {model.place(period)}: wanted a residual of {TOLERANCE}, found "
         f"{np.abs(found).max():.2e}; start nearer, or follow a branch of steady states from another speed"
     )
 

@@ -7,7 +7,7 @@ Kahraman and Singh, J. Sound Vib. 142 (1990) 49-75; He et al., Machines 2022, 10
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -34,6 +34,8 @@ class TorsionalModel:
     """F_0, the torque over the base radius [N]."""
     law: MeshLaw
     """F(x, φ) of both sides of the teeth."""
+    teeth: int | None = field(default=None, kw_only=True)
+    """Of the pinion, by which messages say at which of its speeds something happens; None: they say the mesh period."""
     damping: float = 0.0
     """c, of the mesh [N·s/mm]."""
     damped_apart: bool = False
@@ -41,6 +43,10 @@ class TorsionalModel:
     flanks touch."""
     ground_damping: float = 0.0
     """c_g, of the shafts against the ground [N·s/mm]."""
+
+    def place(self, period: float) -> str:
+        """A mesh period [s] as messages name it: by the speed of the pinion where that is known."""
+        return f"a mesh period of {period:.6g} s" if self.teeth is None else f"{60.0 / (self.teeth * period):.5g} r/min"
 
     @cached_property
     def oscillator(self) -> Oscillator:

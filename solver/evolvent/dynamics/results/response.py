@@ -73,7 +73,8 @@ class ResponseRow:
     """Its estimated error, likewise."""
     dynamic_factor_iso: float
     """K_v of ISO 6336-1:2006, Method B, at this speed: by the deviations and the mass that the scene gives, without its
-    damping; the same up and down."""
+    damping; the same up and down. NaN without both deviations (`dynamics.base_pitch_deviation_um`,
+    `dynamics.profile_deviation_um`)."""
     separated_share: float
     """Share of the time in which no flanks touch."""
     back_contact_share: float

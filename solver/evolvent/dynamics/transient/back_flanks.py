@@ -15,5 +15,6 @@ def require_backlash(lowest: float, backlash: float, where: str) -> None:
         raise BackFlanks(
             f"{where}: wanted a motion within the backlash of {1e3 * backlash:.3g} µm, found a transmission error of "
             f"{1e3 * lowest:.3g} µm, at which the back flanks touch, which are not modelled here; `evolvent dynamics` "
-            "has both sides; or give more damping, another speed"
+            "has both sides. Give the backlash of the pair (dynamics.backlash_um, tooth_thickness_allowance_um of the "
+            "gears, or pair.centre_distance_mm), more damping, or another speed"
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,12 +29,12 @@ LEAST = 1
 
 def resolved_modes(
     problem: GearProblem, model: GearModel, density: float, sampled: float, per_harmonic: int | None,
-    least: int = LEAST,
+    least: int = LEAST, computed: Callable[[], None] = lambda: None,
 ) -> tuple[GearModes, GearModes]:  # fmt: skip
     """Of pinion and wheel: those that have four time steps a period, and at least so many of each harmonic.
 
     density: [kg/m³]. sampled: time steps a second, at the highest speed. per_harmonic: so many of each harmonic of the
-    ring of teeth instead, None for the default. least: by default `LEAST`.
+    ring of teeth instead, None for the default. least: by default `LEAST`. computed: called after each harmonic.
 
     Raises MeshError, NotPositiveDefinite, OutOfMemory.
     """
@@ -42,7 +42,7 @@ def resolved_modes(
     heavy = [
         replace(body, material=replace(body.material, density=TONNE_PER_MM3 * density)) for body in model.bodies
     ]
-    pinion, wheel = (gear_modes(body, choice, mode_mesh(problem, body)) for body in heavy)
+    pinion, wheel = (gear_modes(body, choice, mode_mesh(problem, body), computed) for body in heavy)
     return pinion, wheel
 
 

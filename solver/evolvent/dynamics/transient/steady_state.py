@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,11 +64,12 @@ class MeshPeriods:
 
 
 def until_steady(
-    transient: PairTransient, start: PairState, most: int, wanted: float, first: int = 0
-) -> MeshPeriods:
+    transient: PairTransient, start: PairState, most: int, wanted: float, first: int = 0,
+    computed: Callable[[], None] = lambda: None,
+) -> MeshPeriods:  # fmt: skip
     """Mesh periods until the transmission error changes by at most `wanted` of its peak-to-peak value from one to the
-    next, `most` at most. first: so many mesh periods are reported with all their positions. Raises NotConverged,
-    SearchError, Unbalanced."""
+    next, `most` at most. first: so many mesh periods are reported with all their positions. computed: called after each
+    mesh period. Raises NotConverged, SearchError, Unbalanced."""
     count, errors, changes = transient.contacts.positions, [], []
     moments: list[PairMoment] = []
     beginning: list[PairMoment] = []
@@ -83,6 +85,7 @@ def until_steady(
         last, before = np.array(errors[-count:]), np.array(errors[-2 * count : -count])
         period = [moments[-1], *moments[:-1]]  # the last one stands at rotation 0 again
         moments = []
+        computed()
         if len(before):
             changes.append(float(np.abs(last - before).max() / max(np.ptp(last), 1e-300)))
             if changes[-1] <= wanted:

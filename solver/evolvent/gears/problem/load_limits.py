@@ -53,6 +53,12 @@ def rounded_down(limit: float) -> str:
     return f"{math.floor(limit / step) * step:.10g}"
 
 
+def rounded_up(limit: float) -> str:
+    """A least value to three digits, none of which is below it."""
+    step = 10.0 ** (math.floor(math.log10(limit)) - 2)
+    return f"{math.ceil(limit / step) * step:.10g}"
+
+
 def check_load(problem: GearProblem) -> None:
     """Raises InputError for a torque under which the contact has no width, or strains are large."""
     half_width = float(problem.hertz_estimate.half_width(0.0))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
@@ -11,6 +13,8 @@ from evolvent_meshes.arrays import Floats
 
 FROM, TO = 1.0 / 6.0, 1.6
 """Speeds that are swept by default, over the natural one."""
+WAYS = 2
+"""Motions that are computed at a speed: running up and running down."""
 SAME_SPEED = 1e-9
 """Part by which speeds differ that are one."""
 
@@ -30,10 +34,12 @@ def map_list(natural_speed: float, section: DynamicsSection) -> Floats:
     return _even(natural_speed, section, section.map_speeds)
 
 
-def sweep_at(pair: Drive, speeds: Floats) -> SpeedSweep:
-    """A pair that runs up and down through ascending speeds (n,) [r/min]. Raises NoSteadyState."""
+def sweep_at(pair: Drive, speeds: Floats, computed: Callable[[], None] = lambda: None) -> SpeedSweep:
+    """A pair that runs up and down through ascending speeds (n,) [r/min]. computed: called `WAYS` times a speed. Raises
+    NoSteadyState."""
     slowest, fastest = speeds_to_periods(pair.natural_speed * np.array([FROM, TO]), pair.teeth)
-    return sweep_speeds(pair.model, speeds_to_periods(speeds, pair.teeth), (float(slowest), float(fastest)))
+    periods = speeds_to_periods(speeds, pair.teeth)
+    return sweep_speeds(pair.model, periods, (float(slowest), float(fastest)), computed)
 
 
 def _even(natural_speed: float, section: DynamicsSection, count: int) -> Floats:

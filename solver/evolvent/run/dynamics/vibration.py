@@ -14,7 +14,7 @@ from evolvent.dynamics.iso_stiffness import outside_range
 from evolvent.dynamics.oscillator.response import MESHES, Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
-from evolvent.dynamics.pair_model import Drive, DriveSettings, check_room, drive
+from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.histories import Motion, history_rows, motions, write_histories
 from evolvent.dynamics.results.response import (
@@ -43,15 +43,16 @@ from evolvent.run.dynamics.excitation import (
 )
 from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
-from evolvent.run.dynamics.speeds import map_list, sweep_at, sweep_list
+from evolvent.run.dynamics.speeds import WAYS, map_list, sweep_at, sweep_list
 from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
-from evolvent.run.dynamics.vibration_errors import errors_over_speed, vibration_of
+from evolvent.run.dynamics.vibration_errors import SWEEPS, errors_over_speed, vibration_of
 from evolvent.run.dynamics.written_files import OF_DYNAMICS, PORTRAITS, VIBRATION_PICTURE, WATERFALL
 from evolvent.run.progress import OUTPUT, Progress
-from evolvent.scene.pair_dynamics import check_positions, drive_settings
+from evolvent.scene.pair_dynamics import check_backlash, check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
+from evolvent.scene.vibration_limits import doubtful
 
 SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
 
@@ -72,10 +73,10 @@ def run_dynamics(
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     check_positions(scene)
+    check_backlash(scene)
     section = scene.dynamics or DynamicsSection()
     loads = scene_torques(scene, section.torque_percents)
     fine, coarse = kept_positions(loads, out, resume)
-    check_room(loads.problem, scene.sweep.positions, drive_settings(loads.problem.pair, section))
     with writing_results(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
         excitation = computed_excitation(loads, comm, progress, fine, prepare)
         companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
@@ -101,14 +102,14 @@ def _written(
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
     iso = method_b(first.pair, vibrating.model.mass, vibrating.model.load, accuracy(section), moduli)
-    progress.stage(SPEEDS)
     speeds = sweep_list(vibrating.natural_speed, section)
-    swept = sweep_at(vibrating, speeds)
+    progress.stage(SPEEDS, WAYS * len(speeds))
+    swept = sweep_at(vibrating, speeds, progress.advance)
     own, branch = vibration_of(vibrating, swept), list(branch_rows(vibrating, swept))
     found = own.found
     if companion.excitation is not None:
-        progress.stage(SPEEDS_AGAIN)
-    errors = errors_over_speed(own, excitation, companion, first, settings, speeds)
+        progress.stage(SPEEDS_AGAIN, SWEEPS * WAYS * len(speeds))
+    errors = errors_over_speed(own, excitation, companion, first, settings, speeds, progress.advance)
     moving = motions(vibrating, swept, section.histories_rpm)
     over_torque = _over_torque(excitation, first, vibrating, settings, section, progress)
     progress.stage(OUTPUT)
@@ -124,9 +125,10 @@ def _written(
         write_torque_map(folder, over_torque.rows)
     pictures = [*_pictures(vibrating, swept, found, branch, moving, iso, errors), *map_pictures(over_torque)]
     failures += draw(pictures if wanted_output(loads.scene).pictures else [], folder).failures
-    said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
+    said = *doubtful(loads.scene.planned_vibration()), *_warnings(vibrating, settings, known)
+    said = *said, *_not_followed(vibrating, swept), *_branch_warnings(swept)
     said = *said, *_not_repeating(vibrating, swept), *errors.said
-    return [*failures, *said, *_iso_warnings(first), *over_torque.warnings]
+    return [*failures, *said, *_iso_warnings(first, iso), *over_torque.warnings]
 
 
 def _over_torque(
@@ -236,8 +238,15 @@ def _not_repeating(vibrating: Drive, swept: SpeedSweep) -> list[str]:
     ]
 
 
-def _iso_warnings(problem: GearProblem) -> list[str]:
-    """What of the gears K_v of ISO 6336-1 is not made for, or does not see."""
+def _iso_warnings(problem: GearProblem, iso: MethodB) -> list[str]:
+    """What K_v of ISO 6336-1 wants, and what of the gears it is not made for or does not see."""
+    if not iso.has_factor:
+        given = {
+            "dynamics.base_pitch_deviation_um": iso.accuracy.base_pitch_deviation,
+            "dynamics.profile_deviation_um": iso.accuracy.profile_deviation,
+        }
+        missing = " and ".join(key for key, value in given.items() if value is None)
+        return [f"dynamic_factor_iso: no K_v of ISO 6336-1 without the deviations of the gears; give {missing}"]
     found = []
     if (what := outside_range(problem.pair)) is not None:
         found.append(f"dynamic_factor_iso: the tooth stiffness of ISO 6336-1 is not made for these gears: {what}")

@@ -26,6 +26,8 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import EvolventError
 
 COARSE, THINNED = "on elements of twice the size", "on every other position from the {} on"
+SWEEPS = 3
+"""Of all speeds, on other excitations."""
 FINER = "A finer mesh tells (mesh.level)"
 CLOSER = "More positions tell (sweep.positions)"
 
@@ -43,16 +45,18 @@ def errors_over_speed(
     problem: GearProblem,
     settings: DriveSettings,
     speeds: Floats,
+    computed: Callable[[], None] = lambda: None,
 ) -> VibrationErrors:
     """Error bars of a pair's vibration at ascending speeds (n,) [r/min]; unknown where the companion has no excitation,
     or a sweep fails: that is said, and results are not lost for it.
 
     own: on `excitation`, under the load that counts.
     problem: its pair.
+    computed: called `SWEEPS` times as often as by the sweep of the pair itself.
     """
     load = own.drive.model.load
     others = [
-        _swept(name, mesh, lambda mesh: drive(problem.pair, mesh, load, settings), speeds)
+        _swept(name, mesh, lambda mesh: drive(problem.pair, mesh, load, settings), speeds, computed)
         for name, mesh in _excitations(excitation, companion)
     ]
     said = _without_spacing(excitation) if others else []
@@ -74,12 +78,13 @@ def _excitations(
 
 
 def _swept(
-    name: OtherVibration, excitation: MeshExcitation, pair_on: Callable[[MeshExcitation], Drive], speeds: Floats
-) -> OtherVibration:
+    name: OtherVibration, excitation: MeshExcitation, pair_on: Callable[[MeshExcitation], Drive], speeds: Floats,
+    computed: Callable[[], None],
+) -> OtherVibration:  # fmt: skip
     """With its vibration, or why there is none."""
     try:
         pair = pair_on(excitation)
-        return replace(name, vibration=vibration_of(pair, sweep_at(pair, speeds)))
+        return replace(name, vibration=vibration_of(pair, sweep_at(pair, speeds, computed)))
     except EvolventError as error:
         return replace(name, failure=str(error))
 

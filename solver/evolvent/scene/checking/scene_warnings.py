@@ -19,6 +19,7 @@ from evolvent.scene.checking.transient_rows import transient_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dependence import effectless_keys
+from evolvent.scene.vibration_limits import doubtful
 
 FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
 
@@ -48,6 +49,12 @@ def _expected(scene: Scene) -> Iterator[str]:
             "better choice."
         )
     yield from transient_warnings(scene)
+    if scene.dynamics is not None:
+        from evolvent.scene.checking.vibration_rows import vibration_warnings  # Numba takes a second to import
+
+        yield from vibration_warnings(scene)
+    if scene.dynamics is not None or scene.transient is not None:
+        yield from (f"{each}." for each in doubtful(scene.planned_vibration()))
     yield from undercut_warnings(problem)
     yield from modification_warnings(problem)
     yield from tip_edge_warnings(problem)

@@ -9,6 +9,8 @@ from evolvent.dynamics.gear_inertia import equivalent_mass
 from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
 from evolvent.dynamics.resolved_vibration import unresolved
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.scene.backlash import unnamed_backlash
+from evolvent.scene.checking.planned_cost import most_time_steps, natural_modes, too_many_modes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import Scene
@@ -18,6 +20,7 @@ Line = tuple[str, str, str, tuple[str, ...]]
 """Name, symbol, unit and values."""
 STEPS = "Time steps at each speed", ("f_z [Hz]", "step [µs]", "steps/period")
 """Title of the table of `step_lines`, and the heads of its columns."""
+AT_COST = "each at the cost of a position or two"
 BY_ISO = "by c_γα of ISO 6336-1"
 
 
@@ -37,8 +40,10 @@ class PlannedSteps:
 
 def transient_lines(scene: Scene, section: TransientSection, companion: bool) -> list[Line]:
     """Of a scene with the section. companion: whether error bars are asked for."""
-    cases = len(section.speeds_rpm) * len(scene.contact.friction)
-    steps, divided = str(scene.sweep.positions), section.tolerance is not None
+    cases, positions = len(section.speeds_rpm) * len(scene.contact.friction), scene.sweep.positions
+    steps, divided = str(positions), section.tolerance is not None
+    modes = " and ".join(f"{float(f'{count:.2g}'):.0f}" for count in natural_modes(scene, section))
+    most = most_time_steps(section, cases, positions, companion)
     return [
         ("how the gears turn", "", "", (section.drive,)),
         ("speeds × friction coefficients", "", "", (f"{len(section.speeds_rpm)} × {len(scene.contact.friction)}",)),
@@ -47,6 +52,8 @@ def transient_lines(scene: Scene, section: TransientSection, companion: bool) ->
         ("mesh periods of each, at most", "", "", (str(section.mesh_periods),)),
         ("time steps in a mesh period" + (", at least" if divided else ""), "", "", (steps,)),
         *([("  each of which is divided by, at most", "", "", (str(section.most_parts),))] if divided else []),
+        ("natural modes of pinion and wheel, about", "", "", (modes,)),
+        (f"time steps in all, at most, {AT_COST}", "", "", (f"{most:,}",)),
         (f"natural frequency {BY_ISO}", "f_n", "Hz", (f"{natural_frequency(scene, section):.4g}",)),
     ]
 
@@ -61,15 +68,29 @@ def step_lines(scene: Scene, section: TransientSection) -> list[Line]:
 
 
 def transient_warnings(scene: Scene) -> list[str]:
-    """On speeds at which equal steps do not resolve the pair's own vibration; none without the section, or where a
-    tolerance divides steps."""
+    """On a backlash that nobody has named, and on speeds at which equal steps do not resolve the pair's own vibration;
+    none of these where a tolerance divides steps."""
     section = scene.transient
-    if section is None or section.tolerance is not None:
+    if section is None:
         return []
+    found = _without_backlash(scene, section)
+    if problem := too_many_modes(scene, section):
+        found.append(f"`evolvent transient` would refuse this scene: {problem}.")
+    if section.tolerance is not None:
+        return found
     natural, count = natural_frequency(scene, section), scene.sweep.positions
     radius = section.spectral_radius
     said = [unresolved(each.speed, natural, each.a_period, count, radius) for each in planned_steps(scene, section)]
-    return [f"{each} (natural frequency {BY_ISO})." for each in said if each]
+    return found + [f"{each} (natural frequency {BY_ISO})." for each in said if each]
+
+
+def _without_backlash(scene: Scene, section: TransientSection) -> list[str]:
+    """What becomes of flanks that part where nobody has named a backlash."""
+    given = None if scene.dynamics is None else scene.dynamics.backlash_um
+    if (problem := unnamed_backlash(scene.gear_pair(), given)) is None:
+        return []
+    refused = "would refuse this scene" if section.start == "rest" else "would end without results where flanks part"
+    return [f"`evolvent transient` {refused}: {problem}."]
 
 
 def planned_steps(scene: Scene, section: TransientSection) -> list[PlannedSteps]:

@@ -5,16 +5,19 @@ from __future__ import annotations
 
 from evolvent.dynamics.gear_inertia import equivalent_mass
 from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
-from evolvent.dynamics.oscillator.mesh_law import Jammed
-from evolvent.dynamics.pair_model import DriveSettings, check_room
-from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.dynamics.pair_model import lacking_room
+from evolvent.scene.backlash import unnamed_backlash
+from evolvent.scene.checking.planned_cost import SWEEPS, shown_time, speeds_time
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import drive_settings
+from evolvent.scene.pair_dynamics import backlash_problem, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent.scene.skips import wanted_output
 
 Line = tuple[str, str, str, tuple[str, ...]]
 """Name, symbol, unit and the values of pinion and wheel, or of both."""
+NOBODYS = "none is given"
+WITH_OTHERS = "with those on other excitations, for error bars"
 
 
 def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
@@ -25,24 +28,25 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
     force = problem.torque / problem.pair.gears[problem.torque_on].base_radius
     moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
     iso = method_b(problem.pair, mass, force, Accuracy(), moduli)
+    natural, bars = scene.planned_vibration().natural_speed, wanted_output(scene).error_bars
     swept = ["by default", *(f"{speed:g}" for speed in section.speed_rpm or ())]
+    named = unnamed_backlash(problem.pair, section.backlash_um) is None
     return [
         ("moment of inertia", "I", "kg·m²", tuple(f"{1e-3 * each:.4g}" for each in settings.inertias)),
         ("equivalent mass along the line of action", "m_e", "kg", (f"{1e3 * mass:.4g}",)),
         ("damping ratio", "ζ", "", (f"{settings.damping_ratio:g}",)),
-        ("backlash along the line of action", "j", "µm", (f"{1e3 * settings.backlash:.4g}",)),
-        ("  lacking for unloaded errors", "", "µm", (f"{1e3 * _lacking(problem, settings, count):.3g}",)),
+        ("backlash along the line of action", "j", "µm", (f"{1e3 * settings.backlash:.4g}" if named else NOBODYS,)),
+        ("  lacking for unloaded errors", "", "µm", (f"{1e3 * lacking_room(problem, count, settings):.3g}",)),
         ("natural speed by c_γα of ISO 6336-1", "n_E1", "r/min", (f"{iso.resonance_speed:.4g}",)),
         ("speeds", "n", "r/min", tuple(swept[1:] or swept[:1])),
         ("positions × torques of the excitation", "", "", (f"{count} × {len(section.torque_percents)}",)),
         ("speeds, up and down", "", "", (str(section.speeds),)),
+        *([(f"  {WITH_OTHERS}", "", "", (str(SWEEPS * section.speeds),))] if bars else []),
+        ("processor time of the speeds, roughly", "", "", (shown_time(speeds_time(natural, section, bars)),)),
     ]
 
 
-def _lacking(problem: GearProblem, settings: DriveSettings, count: int) -> float:
-    """Backlash [mm] that unloaded errors want beyond the given one; 0 where they have room, to a micrometre."""
-    try:
-        check_room(problem, count, settings)
-    except Jammed as jammed:
-        return jammed.overlap
-    return 0.0
+def vibration_warnings(scene: Scene) -> list[str]:
+    """Why `evolvent dynamics` would refuse a scene with the section; none where it would not."""
+    refused = backlash_problem(scene)
+    return [] if refused is None else [f"`evolvent dynamics` would refuse this scene: {refused}."]

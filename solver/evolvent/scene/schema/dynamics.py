@@ -24,6 +24,7 @@ MAP_PERCENTS = f"{MAP[0]} to {MAP[1]} different numbers from {MAP_RANGE[0]:g} to
 TRANSIENT_SPEEDS = f"a list of 1 to 12 different speeds above 0 up to {FASTEST:g}, in r/min"
 MANY_PARTS, MOST_PARTS = 64, 1024
 """Of the way from one position to the next: by default at most, and the most that may be asked for."""
+DEVIATION = "a number above 0 up to 1000, in µm: no gear is perfect"
 PARTS = f"a power of two from 2 to {MOST_PARTS}"
 Speed = Annotated[float, Field(gt=0, le=FASTEST)]
 
@@ -119,14 +120,14 @@ class DynamicsSection(SceneSection):
         "number of speeds of that map, evenly spaced", f"a whole number from 2 to {MOST_SPEEDS}",
         needs=("map_percents",), default=100, ge=2, le=MOST_SPEEDS,
     )  # fmt: skip
-    base_pitch_deviation_um: float = key(
+    base_pitch_deviation_um: float | None = key(
         "f_pb, deviation of the transverse base pitch, the larger of both gears, for K_v of ISO 6336-1 beside the "
-        "computed factor; 0: perfect pitches",
-        "a number from 0 to 1000, in µm", "it is f_pt cos α_t of ISO 1328-1", default=0.0, ge=0, le=1000,
+        "computed factor; without it and f_fα there is no K_v",
+        DEVIATION, "it is f_pt cos α_t of ISO 1328-1", default=None, gt=0, le=1000,
     )  # fmt: skip
-    profile_deviation_um: float = key(
-        "f_fα, profile form deviation, likewise; 0: perfect profiles", "a number from 0 to 1000, in µm", default=0.0,
-        ge=0, le=1000,
+    profile_deviation_um: float | None = key(
+        "f_fα, profile form deviation, likewise", DEVIATION, "ISO 1328-1 has it by the tolerance class", default=None,
+        gt=0, le=1000,
     )  # fmt: skip
     tolerance_class: int | None = key(
         "of ISO 1328-1, the coarser of both gears, likewise; from 6 on tip relief does not count; by default it does",

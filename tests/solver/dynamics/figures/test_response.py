@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
-from evolvent.dynamics.figures.response import response_figure
+from evolvent.dynamics.figures.response import ISO, response_figure
 from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
 from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
 from evolvent.dynamics.pair_model import DriveSettings, drive
@@ -22,12 +22,13 @@ from evolvent.scene.gear_problem import gear_problem
 from tests.support.gear_cases import spur_scene
 
 LOAD, SPEEDS = 1000.0, np.linspace(3000.0, 6000.0, 5)
+DEVIATING = Accuracy(5.0, 5.0)
 BARS = np.array([1e-4, 2e-4, 3e-4, 2e-4, 1e-4])
 """Of the amplitude [mm]."""
 
 
-def drawn(known: bool) -> Figure:
-    """Running through five speeds, with an error or without."""
+def drawn(known: bool, accuracy: Accuracy = DEVIATING) -> Figure:
+    """Running through five speeds, with an error or without, on gears of an accuracy."""
     pair, forces = gear_problem(spur_scene()).pair, np.array([LOAD, 2.0 * LOAD])
     error, stiffness = 2e-4 * np.cos(2.0 * np.pi * np.arange(8) / 8), np.full((8, 2), 3e5)
     angles = 2.0 * np.pi / 50.0 * np.arange(8) / 8
@@ -39,7 +40,7 @@ def drawn(known: bool) -> Figure:
     if known:
         both = {"up": BARS, "down": 9.0 * BARS}
         errors = replace(errors, amplitude=both, dynamic_factor={way: 1e3 * bars for way, bars in both.items()})
-    iso = method_b(pair, vibrating.model.mass, LOAD, Accuracy(5.0, 5.0), (2.1e5, 2.1e5))
+    iso = method_b(pair, vibrating.model.mass, LOAD, accuracy, (2.1e5, 2.1e5))
     return response_figure(vibrating, swept, found, list(branch_rows(vibrating, swept)), iso, errors)
 
 
@@ -66,3 +67,14 @@ def test_an_unknown_error_has_none() -> None:
     assert not any("Its error: " in text.get_text() for text in figure.texts)
     legend = figure.axes[0].get_legend()
     assert legend is not None and "its error" not in [text.get_text() for text in legend.get_texts()]
+
+
+def test_no_curve_of_perfect_gears() -> None:
+    """K_v of ISO 6336-1 is drawn for gears with deviations alone; else the foot names the keys that it wants. Once,
+    that of perfect gears was drawn under the standard's name."""
+    for accuracy, curve in ((DEVIATING, True), (Accuracy(), False)):
+        figure = drawn(False, accuracy)
+        factor, foot = figure.axes[1], " ".join(text.get_text() for text in figure.texts)
+        assert (ISO in [str(line.get_label()) for line in factor.lines]) == curve
+        assert (factor.get_legend() is not None) == curve
+        assert ("dynamics.profile_deviation_um" in foot) != curve

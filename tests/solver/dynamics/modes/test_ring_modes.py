@@ -128,3 +128,10 @@ def test_a_motion_a_pitch_earlier() -> None:
         for sector in (0, 3):
             moved = modes.of_sector(sector) @ modes.earlier(q, pitches)
             assert moved == pytest.approx(modes.of_sector(sector + pitches) @ q, abs=1e-12 * np.abs(q).max() * 1e9)
+
+
+def test_each_harmonic_is_shown_once_its_modes_are_known() -> None:
+    """A ring of 50 teeth has the harmonics 0 to 25: 26 calls."""
+    shown: list[None] = []
+    gear_modes(bodies("spur of order 1")[0], ModeChoice(0.0, per_harmonic=1), computed=lambda: shown.append(None))
+    assert len(shown) == 26

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,7 +13,7 @@ from evolvent.dynamics.oscillator.continuation import Branch
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, linear_side, no_side
 from evolvent.dynamics.oscillator.settling import settled
 from evolvent.dynamics.oscillator.speed_sweep import OnBranch, Running, SpeedSweep, speeds_to_periods, sweep_speeds
-from evolvent.dynamics.oscillator.steady_state import SteadyState, steady_state
+from evolvent.dynamics.oscillator.steady_state import NoSteadyState, SteadyState, steady_state
 from evolvent.dynamics.oscillator.time_integration import integrate
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history
 
@@ -148,3 +149,19 @@ def test_a_branch_that_cannot_be_followed_further_is_left_at_its_end(rising: boo
     known.model, known.coexisting = softening(0.1), [[], [OnBranch(1.5 if not rising else 3.5, state(2.0, 1.5))]]
     before = Running(state(4.5, 0.5), 0.5, None) if rising else Running(state(0.7, 0.5), 3.6, None)
     assert speed_sweep._left_at(known, before, 1, rising) == (3.0 if rising else 1.0)
+
+
+def test_each_motion_is_shown_once_it_is_known() -> None:
+    """Five speeds, both ways: ten calls."""
+    shown: list[None] = []
+    speeds = speeds_to_periods(np.linspace(0.6, 1.3, 5) * RESONANCE, TEETH)
+    sweep_speeds(softening(0.15), speeds, computed=lambda: shown.append(None))
+    assert len(shown) == 10
+
+
+@pytest.mark.parametrize(("teeth", "place"), [(TEETH, "2000 r/min"), (None, "a mesh period of 0.0006 s")])
+def test_messages_name_the_speed_of_the_pinion(teeth: int | None, place: str) -> None:
+    """A start from which Newton's method finds nothing: the message says at which speed, where the teeth are known. The
+    mesh period stands in no file of the user's."""
+    with pytest.raises(NoSteadyState, match=f"steady state at {place}:"):
+        steady_state(replace(softening(0.15), teeth=teeth), 6e-4, np.full(2, np.nan))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,12 @@ import pytest
 from scipy.integrate import trapezoid
 
 from evolvent.cli import main
-from evolvent.dynamics.oscillator.mesh_law import Jammed
 from evolvent.dynamics.pair_model import geometric_backlash
 from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.vibration import run_dynamics
-from evolvent.scene.pair_dynamics import drive_settings
+from evolvent.run.scene_run import run_scene
+from evolvent.scene.checking.check_report import overview
+from evolvent.scene.pair_dynamics import backlash_problem, drive_settings, operating_point
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.gears.gear import GearParameters
@@ -27,6 +29,7 @@ from tests.support.running.processes import Run, on_ranks
 SETTINGS = (
     "output.pictures=true", "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]",
     "dynamics.speeds=60", "dynamics.speed_rpm=[1700,7000]", "dynamics.base_pitch_deviation_um=5",
+    "dynamics.profile_deviation_um=4",
 )  # fmt: skip
 
 
@@ -94,15 +97,16 @@ def test_jumps_are_named_by_their_way(out: Path) -> None:
 
 
 def test_dynamic_factor_of_the_standard_stands_beside(out: Path) -> None:
-    """dynamic_factor_iso is K_v of Method B worked by hand: with f_pb = 5 µm, 7.5 % of it run in, B_p = c' 4.625/w and
-    B_k = 1; the same up and down. The line load w is F cos α/b."""
+    """dynamic_factor_iso is K_v of Method B worked by hand: with f_pb = 5 µm and f_fα = 4 µm, 7.5 % of them run in,
+    B_p = c' 4.625/w, B_f = c' 3.7/w and B_k = 1; the same up and down. The line load w is F cos α/b."""
     known, lines = json.loads((out / "dynamics.json").read_text(encoding="utf-8")), rows(out / "response.csv")
     line_load = known["static_force_N"] * np.cos(np.radians(20.0)) / 20.0
-    B_p = known["iso_single_stiffness_N_per_mm_um"] * 4.625 / line_load
+    B_p, B_f = (known["iso_single_stiffness_N_per_mm_um"] * um / line_load for um in (4.625, 3.7))
     for line, other in zip(lines[:60], lines[60:]):
         N, factor = float(line["speed_rpm"]) / known["iso_resonance_speed_rpm"], float(line["dynamic_factor_iso"])
         if N <= 1.15:
-            exact = 1.0 + N * (0.32 * B_p + 0.23) if N <= 0.85 else 1.0 + 0.32 * B_p + 0.90
+            deviating = 0.32 * B_p + 0.34 * B_f
+            exact = 1.0 + N * (deviating + 0.23) if N <= 0.85 else 1.0 + deviating + 0.90
             assert factor == pytest.approx(exact, rel=1e-8)
         assert other["dynamic_factor_iso"] == line["dynamic_factor_iso"]
     assert known["iso_relief_term"] == 1.0
@@ -169,9 +173,20 @@ def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
     assert said.startswith(f"dynamics.backlash_um: found 0 µm, less than the static deflection of {deflection:.3g} µm")
 
 
+def test_no_factor_of_the_standard_without_deviations(tmp_path: Path) -> None:
+    """With f_pb alone: a column without a number, and a sentence that names the missing key."""
+    words = [each for each in SETTINGS if "profile_deviation" not in each]
+    few = 'dynamics.mesh="secant"', "dynamics.speeds=2"
+    one = load_scene(ROOT / "demos/he2022_dynamics.toml", [*QUIET, *words, *few])
+    (said,) = run_dynamics(one, tmp_path, quiet=True)
+    assert said.startswith("dynamic_factor_iso: ") and said.endswith("give dynamics.profile_deviation_um")
+    assert {line["dynamic_factor_iso"] for line in rows(tmp_path / "response.csv")} == {"nan"}
+
+
 @pytest.mark.parametrize(
     ("setting", "key"),
     [
+        ("dynamics.base_pitch_deviation_um=0", "dynamics.base_pitch_deviation_um"),
         ("dynamics.speed_rpm=[4000,500]", "dynamics.speed_rpm"),
         ("dynamics.torque_percents=[50,200]", "dynamics.torque_percents"),
         ("dynamics.torque_percents=[100,100]", "dynamics.torque_percents"),
@@ -221,11 +236,42 @@ def test_wear_does_not_keep_a_scene_from_its_vibration(tmp_path: Path) -> None:
 
 
 def test_too_little_backlash_is_said_before_contact_is_solved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Flanks that stand 10 µm proud on both sides, backlash 0: refused by geometry alone, and no file is left."""
-    chart = "diameter_mm,depth_um\n140,-10\n157,-10\n"
-    (tmp_path / "proud.csv").write_text(chart)
-    given = scene(f'pinion.flank_csv="{tmp_path / "proud.csv"}"', "dynamics.backlash_um=0")
+    """Flanks that stand 10 µm proud on both sides, backlash 0: refused by geometry alone, with status 2, and no file is
+    left; `check` has the same figure, and with what is asked for the scene is taken."""
+    (tmp_path / "proud.csv").write_text("diameter_mm,depth_um\n140,-10\n157,-10\n")
+    proud = f'pinion.flank_csv="{tmp_path / "proud.csv"}"'
     monkeypatch.setattr(excitation, "prepare_model", None)
-    with pytest.raises(Jammed, match=r"overlap on both sides, unloaded errors included, by 20"):
-        run_dynamics(given, tmp_path / "out", quiet=True)
+    with pytest.raises(SceneError, match=r"found 0 µm, 20(\.\d)? µm less than unloaded errors") as error:
+        run_dynamics(scene(proud, "dynamics.backlash_um=0"), tmp_path / "out", quiet=True)
     assert not (tmp_path / "out").exists()
+    assert f"{error.value}" in overview(scene(proud, "dynamics.backlash_um=0"))
+    least = re.search(r"from (\S+) µm on", str(error.value))
+    assert least and backlash_problem(scene(proud, f"dynamics.backlash_um={least[1]}")) is None
+
+
+@pytest.mark.parametrize(
+    ("settings", "named"),
+    [
+        ((), False),  # the reference centre distance
+        (("pair.centre_distance_mm=150.0005",), False),  # rounding
+        (("dynamics.backlash_um=60",), True),
+        (("pair.centre_distance_mm=150.1",), True),
+        (("pinion.tooth_thickness_allowance_um=-60",), True),
+    ],
+)
+def test_somebody_names_the_backlash(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, settings: tuple[str, ...], named: bool
+) -> None:
+    """A scene whose vibration would be that of a pair without backlash, because nobody has given one, is refused before
+    anything is computed, by `evolvent dynamics` and by `evolvent run` at a speed, with the keys that give one. Once, it
+    was computed without any, and showed no free flight and no jump."""
+    given = load_scene(ROOT / "demos/he2022.toml", [*QUIET, "dynamics.operating_rpm=2000", *settings])
+    monkeypatch.setattr(excitation, "prepare_model", None)
+    assert (backlash_problem(given) is None) == named
+    if named:
+        assert operating_point(given) is not None
+        return
+    for compute in (run_dynamics, run_scene):
+        with pytest.raises(SceneError, match=r"dynamics\.backlash_um: found nothing.*tooth_thickness.*centre_dist"):
+            compute(given, tmp_path / "out", quiet=True)
+        assert not (tmp_path / "out").exists()

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
+from evolvent.run.dynamics.transient.transient_run import run_transient
 from evolvent.scene.checking.check_report import overview
+from evolvent.scene.checking.planned_cost import too_many_modes
 from evolvent.scene.checking.scene_warnings import scene_warnings
 from evolvent.scene.checking.transient_rows import natural_frequency, planned_steps, transient_lines
 from evolvent.scene.scene import Scene, load_scene
+from evolvent.scene.schema.errors import SceneError
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import spur_scene
 
@@ -82,3 +86,40 @@ def test_tables_are_printed_with_their_sections_alone() -> None:
     assert "Fatemi-Socie" not in line
     assert "Fatemi-Socie" in overview(pair("fatigue.yield_stress_MPa=1500"))
     assert "Transient" not in plain and "Contact fatigue" not in plain
+
+
+def test_modes_and_time_steps_are_counted() -> None:
+    """Three modes of each harmonic of 50 teeth are 150 of each gear; the default, up to a quarter of the frequency of
+    time steps, at least 50. Three motions of 200 mesh periods in 40 steps, and for error bars the same and four times
+    as many on coarser gears: 6 · 24,000."""
+    few = told(pair("transient.modes_per_harmonic=3"))
+    assert few["natural modes of pinion and wheel, about"] == "150 and 150"
+    assert told(pair())["natural modes of pinion and wheel, about"] == "50 and 50"
+    (steps,) = (value for name, value in few.items() if name.startswith("time steps in all, at most"))
+    assert steps == "144,000"
+    (steps,) = (value for name, value in told(pair(), False).items() if name.startswith("time steps in all, at most"))
+    assert steps == "24,000"
+
+
+def test_too_many_modes_are_refused(tmp_path: Path) -> None:
+    """40,000 r/min in 400 positions resolve vibrations up to 3.3 MHz, of which He's gears have thousands: refused
+    before anything is computed, unless the scene says how many."""
+    many = pair("transient.speeds_rpm=[40000]", "sweep.positions=400")
+    with pytest.raises(SceneError, match=r"transient\.speeds_rpm: found .* modes of a gear.*modes_per_harmonic"):
+        run_transient(many, tmp_path / "out", quiet=True)
+    assert any("modes of a gear" in each for each in scene_warnings(many))
+    assert many.transient is not None
+    assert too_many_modes(many, many.transient.model_copy(update={"modes_per_harmonic": 2})) is None
+
+
+@pytest.mark.parametrize(("start", "words"), [("statics", "would end without results"), ("rest", "would refuse")])
+def test_a_backlash_that_nobody_names_is_said(start: str, words: str, tmp_path: Path) -> None:
+    """Flanks that part need one: a start from rest without one is refused before anything is computed, statics are
+    taken as long as flanks do not part, with a warning of `check`."""
+    plain = load_scene(ROOT / "demos/he2022.toml", ["transient.speeds_rpm=[1500]", f'transient.start="{start}"'])
+    (said,) = (each for each in scene_warnings(plain) if "backlash_um" in each)
+    assert words in said and "pair.centre_distance_mm" in said
+    if start == "rest":
+        with pytest.raises(SceneError, match=r"dynamics\.backlash_um"):
+            run_transient(plain, tmp_path / "out", quiet=True)
+    assert not any("backlash_um" in each for each in scene_warnings(pair()))

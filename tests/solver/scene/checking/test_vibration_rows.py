@@ -39,6 +39,22 @@ def test_proud_flanks_lack_backlash(tmp_path: Path) -> None:
     assert float(found["lacking for unloaded errors"][0]) == pytest.approx(15.0, rel=1e-2)
 
 
+def test_motions_and_their_time_are_told() -> None:
+    """100 speeds, 400 with the three other excitations of error bars, a few seconds; slow speeds take as much longer
+    as a mesh period has more natural ones. Without a backlash that somebody names there is none to be told."""
+    found = told("dynamics.speeds=100")
+    assert found["speeds, up and down"] == ("100",)
+    assert found["with those on other excitations, for error bars"] == ("400",)
+    (time,) = (value for name, value in told("output.error_bars=false").items() if "processor time" in name)
+    assert time == ("6 s",)
+    (slow,) = (value for name, value in told("dynamics.speed_rpm=[50,60]").items() if "processor time" in name)
+    assert "min" in slow[0]
+    bare = load_scene(ROOT / "demos/he2022.toml", ["dynamics.speeds=10"])
+    assert bare.dynamics is not None
+    rows = {name: values for name, _, _, values in vibration_lines(bare, bare.dynamics)}
+    assert rows["backlash along the line of action"] == ("none is given",)
+
+
 def test_table_is_printed_with_the_section_alone() -> None:
     """A scene without [dynamics] has no such table."""
     assert "\nVibration" in overview(load_scene(ROOT / "demos/he2022_dynamics.toml", []))

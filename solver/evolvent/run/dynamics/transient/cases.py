@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from mpi4py import MPI
 
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
+from evolvent.dynamics.modes.ring_modes import harmonics
 from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.dynamics.transient.back_flanks import require_backlash
 from evolvent.dynamics.transient.certificates import certify_motion
@@ -87,10 +89,11 @@ class PairCases:
         progress.stage(MESHING)
         model = prepare(problem, comm, on.mesh, lambda: progress.stage(CONDENSING)).model
         static = known or _statics(scene, model, kept, comm, progress)
-        progress.stage(MODES)
+        progress.stage(MODES, sum(len(harmonics(gear.z)) for gear in problem.pair.gears))
         sampled = max(section.speeds_rpm) / 60.0 * problem.pair.pinion.z * scene.sweep.positions  # Hz
         count, density = section.modes_per_harmonic, dynamics.density_kg_m3
-        modes = together(comm, lambda: resolved_modes(problem, model, density, sampled, count, on.least))
+        found = partial(resolved_modes, problem, model, density, sampled, count, on.least)
+        modes = together(comm, lambda: found(lambda: progress.advance(more=True)))
         constant_speed = section.drive == "constant_speed"
         pair = driven_pair(model, modes, settings, static[0], section.mode_damping_ratio, constant_speed)
         return PairCases(scene, problem, pair, static, settings, comm, progress)
@@ -154,15 +157,16 @@ class PairCases:
             numbers = missing[self.comm.rank :: self.comm.size]
             if not numbers:
                 return found
-            self.progress.stage(stage, len(numbers))
+            most = transient_section(self.scene).mesh_periods
+            self.progress.stage(stage, most * len(numbers))
             start = self._starts(contacts)
-            for number in numbers:
+            for ended, number in enumerate(numbers, 1):
                 transient = self._transient(number, contacts)
                 motion = solved(number, transient, start(number, transient))
                 if motion is not None:
                     kept.write(number, motion)
                     found[number] = motion
-                self.progress.advance()
+                self.progress.reach(most * ended)
             return found
 
         gathered = self.comm.gather(together(self.comm, own)) or []
@@ -198,7 +202,8 @@ class PairCases:
         """Raises NotConverged, SearchError, Unbalanced."""
         section = transient_section(self.scene)
         first = FIRST if self._from_rest else 0
-        return until_steady(transient, start, section.mesh_periods, section.steady_change, first)
+        shown = self.progress.advance
+        return until_steady(transient, start, section.mesh_periods, section.steady_change, first, shown)
 
     def _check(self, found: MeshPeriods, transient: PairTransient) -> None:
         """Raises BackFlanks, Unbalanced."""

@@ -11,8 +11,11 @@ from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE, STAR
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.folder_checks import require_unfinished
+from evolvent.scene.backlash import unnamed_backlash
+from evolvent.scene.checking.planned_cost import too_many_modes
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
+from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.errors import InputError
 
 KEPT_STATIC, KEPT_CASES = "results/transient_static.npz", "results/transient_*.npz"
@@ -33,6 +36,16 @@ def transient_section(scene: Scene) -> TransientSection:
             "transient.speeds_rpm=[1500], or write [transient] into the scene"
         )
     return scene.transient
+
+
+def require_possible(scene: Scene) -> None:
+    """Raises SceneError where a start from rest, whose blow throws the flanks apart, has a backlash that nobody has
+    named, or natural modes are too many. From statics no backlash is needed as long as the flanks do not part."""
+    given, section = None if scene.dynamics is None else scene.dynamics.backlash_um, transient_section(scene)
+    if section.start == "rest" and (problem := unnamed_backlash(scene.gear_pair(), given)):
+        raise SceneError([problem])
+    if problem := too_many_modes(scene, section):
+        raise SceneError([problem])
 
 
 def unused_keys(section: DynamicsSection) -> list[str]:

@@ -26,6 +26,7 @@ from evolvent.run.dynamics.transient.checks import (
     ANIMATION,
     WRITTEN,
     prepared_folder,
+    require_possible,
     transient_section,
     unused_keys,
 )
@@ -40,6 +41,7 @@ from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
+from evolvent.scene.vibration_limits import doubtful
 
 
 def run_transient(
@@ -54,14 +56,16 @@ def run_transient(
     overwrite: begin anew, and replace what an earlier call has written.
     prepare: prepares gears that other calls share.
 
-    Raises InputError without that section; FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged,
-    SearchError, BalanceError, BackFlanks, Unbalanced, WriteError.
+    Raises InputError without that section; SceneError for a start from rest without a backlash or too many modes;
+    FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, BackFlanks,
+    Unbalanced, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     transient_section(scene)
     problem = gear_problem(scene)
     check_positions(scene)
     dynamics = scene.dynamics or DynamicsSection()
+    require_possible(scene)
     settings = drive_settings(problem.pair, dynamics)
 
     def kept(kind: str = "") -> KeptCases:
@@ -74,7 +78,7 @@ def run_transient(
         found = own.found(kept())
         companion, missing = companion_of(scene, problem, settings, kept, comm, progress, prepare)
         progress.stage(OUTPUT)
-        said += [*chart_warnings(scene), *unused_keys(dynamics)]
+        said += [*chart_warnings(scene), *unused_keys(dynamics), *doubtful(scene.planned_vibration())]
         return said + missing + on_first(comm, lambda: _written(own, found, companion, out))
 
 

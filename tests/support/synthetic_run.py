@@ -21,6 +21,7 @@ from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.meshing.element_sizes import sector_resolutions
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.gear_shapes import GearShape, gear_shape
@@ -55,6 +56,13 @@ def synthetic_run(*overrides: str, file: str = "demos/yang2022.toml") -> RunData
     scene = synthetic_scene(*overrides, file=file)
     shapes, flank = synthetic_shapes(scene)
     return run_data(scene, shapes, synthetic_sweep(scene, flank))
+
+
+def resolved_slices(*columns: Floats) -> Slices:
+    """Slices on infinitely fine flanks without relief. columns: all others, in the order of `Slices`."""
+    count = len(columns[0])
+    no = np.zeros(count, dtype=bool)
+    return Slices(*columns, facet=np.zeros((count, 2)), kink=no, narrow=no)
 
 
 def steep_run(*overrides: str) -> RunData:

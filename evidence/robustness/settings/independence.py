@@ -23,6 +23,7 @@ from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.gears.condensed_gear import condensed_gear
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.pressure.contact_slices import slices
+from evolvent.gears.pressure.pitch_pressure import facets_of
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.gears.member import Member
@@ -64,7 +65,7 @@ def gear_figures(safety: float, friction: float = 0.1, level: str = LEVELS[0]) -
         return Figures(np.nan, np.nan, np.nan, np.nan)
     swept = sweep_pitch(model, Pitch(tuple(ROTATIONS)), [friction], initial_state([friction]))
     results = [position.results[0] for position in swept]
-    cuts = [slices(result, model.bodies[0].z, scene.materials()) for result in results]
+    cuts = [slices(result, facets_of(model), scene.materials()) for result in results]
     return Figures(
         float(np.mean([np.nanmax(cut.peak) for cut in cuts])),
         float(np.mean([result.torques[1] for result in results])),

@@ -21,6 +21,7 @@ from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshing.levelled_meshes import levelled_mesh
 from evolvent.gears.pressure.contact_slices import slices
+from evolvent.gears.pressure.pitch_pressure import facets_of
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.two_level_gear import two_level_gear
@@ -80,7 +81,7 @@ def level_figures(safety: float, mesh: MeshSettings = STANDARD) -> LevelFigures:
     pitch = uniform_pitch(model.pair.pinion.z, POSITIONS)
     swept = sweep_pitch(model, pitch, [FRICTION], initial_state([FRICTION]))
     results = [position.results[0] for position in swept]
-    cuts = [slices(result, model.bodies[0].z, problem(mesh).materials) for result in results]
+    cuts = [slices(result, facets_of(model), problem(mesh).materials) for result in results]
     peaks = [cut.peak[~cut.edge & (np.abs(cut.z) < 0.5 * WIDTH - NEAR_END)] for cut in cuts]
     forces = [np.bincount(cut.tooth - cut.tooth.min(), cut.line_load * cut.width) for cut in cuts]
     return LevelFigures(

@@ -13,8 +13,16 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from evolvent.gears.pressure.contact_slices import Slices
-from evolvent.gears.pressure.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
+from evolvent.gears.pressure.line_peaks import (
+    NO_PEAK,
+    LinePeak,
+    line_mean,
+    line_peak,
+    relief_zone_peaks,
+    zone_end_peaks,
+)
 from evolvent.gears.pressure.pitch_pressure import PitchPressure
+from evolvent.gears.pressure.relief_starts import relief_starts
 from evolvent.gears.pressure.tip_zones import AT_LIMIT
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent_meshes.arrays import Bools, Floats, Ints
@@ -37,6 +45,9 @@ class EngagementPeak:
     """Index of the tooth pair, within the pitch, on which it occurs."""
 
 
+UNKNOWN_PEAK = EngagementPeak(float("nan"), float("nan"), False, 0)
+
+
 @dataclass(frozen=True)
 class Engagement:
     """The engagement of one tooth at one friction coefficient, sampled at n rotations in ascending order."""
@@ -55,40 +66,50 @@ class Engagement:
     """(n,) share of the normal force of all teeth in contact."""
     max_pressure: Floats
     """(n,) largest peak pressure along the contact line [MPa], see `line_peak`; NaN where no part of the line lies
-    between the tip-edge zones."""
+    between the tip-edge zones, and where the contact of a spur pair covers the start of a linear relief."""
+    kink_pressure: Floats
+    """(n,) largest peak pressure over the start of a linear relief [MPa]; NaN where the contact covers none."""
     at_zone_end: Bools
     """(n,) bool, whether that pressure lies at the limit of a tip-edge zone."""
     mean_pressure: Floats
-    """(n,) mean peak pressure along the contact line [MPa], see `line_mean`; NaN as `max_pressure`."""
+    """(n,) mean peak pressure along the contact line [MPa], see `line_mean`, over the starts of reliefs too; NaN where
+    no part of the line lies between the tip-edge zones."""
     contact_length: Floats
     """(n,) length of the contact line [mm]."""
     zone_ends: tuple[EngagementPeak, ...] = field(default=(), kw_only=True)
-    """Peaks of a spur pair at the limits of its tip-edge zones, between two positions."""
+    """Peaks of a spur pair between two positions: at the limits of its tip-edge zones, and where its contact begins to
+    cover the start of a linear relief or ceases to."""
+    relief_starts: tuple[float, ...] = field(default=(), kw_only=True)
+    """Rotations [rad] at which the nominal contact of a spur pair passes the starts of linear reliefs."""
 
     @property
     def peak(self) -> EngagementPeak:
-        """The largest pressure of the engagement. Raises ValueError where no pressure is known."""
+        """The largest pressure of the engagement; `UNKNOWN_PEAK` where no pressure is known."""
         return self._largest(np.flatnonzero(np.isfinite(self.max_pressure)), self.zone_ends)
 
     def tooth_peak(self, tooth: int) -> EngagementPeak:
-        """The largest pressure on one tooth pair of the pitch. Raises ValueError where no pressure is known."""
+        """The largest pressure on one tooth pair of the pitch; `UNKNOWN_PEAK` where no pressure is known."""
         entries = np.flatnonzero(np.isfinite(self.max_pressure) & (self.tooth == tooth))
         return self._largest(entries, [end for end in self.zone_ends if end.tooth == tooth])
 
     def _largest(self, entries: Ints, ends: Iterable[EngagementPeak]) -> EngagementPeak:
         """The largest pressure among the given entries and peaks at zone limits."""
-        top = entries[int(np.argmax(self.max_pressure[entries]))]
-        sampled = EngagementPeak(
-            float(self.angle[top]), float(self.max_pressure[top]), bool(self.at_zone_end[top]), int(self.tooth[top])
-        )
-        return max([sampled, *ends], key=lambda peak: peak.pressure)
+        sampled = [
+            EngagementPeak(
+                float(self.angle[k]), float(self.max_pressure[k]), bool(self.at_zone_end[k]), int(self.tooth[k])
+            )
+            for k in entries
+        ]
+        return max([*sampled, *ends], key=lambda peak: peak.pressure, default=UNKNOWN_PEAK)
 
     @property
     def pressure_curve(self) -> tuple[Floats, Floats]:
-        """Rotations (m,) [rad], ascending, and largest pressures (m,) [MPa], with those at `zone_ends`."""
-        angle = np.append(self.angle, [end.angle for end in self.zone_ends])
+        """Rotations (m,) [rad], ascending, and largest pressures (m,) [MPa], with those at `zone_ends`; NaN at
+        `relief_starts`."""
+        angle = np.concatenate([self.angle, [end.angle for end in self.zone_ends], self.relief_starts])
+        gaps = np.full(len(self.relief_starts), np.nan)
         order = np.argsort(angle, kind="stable")
-        return angle[order], np.append(self.max_pressure, [end.pressure for end in self.zone_ends])[order]
+        return angle[order], np.concatenate([self.max_pressure, [end.pressure for end in self.zone_ends], gaps])[order]
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -122,24 +143,27 @@ def engagement(run: RunData, index: int, inner: tuple[float, float] | None = Non
     columns = [np.array(column) for column in zip(*sorted(rows))]
     angle, position, tooth, *values = columns
     radius, limits = run.pair.pinion.base_radius, _zone_ends(run, index, inner)
+    tip_limits = [peak for peak in limits if peak.at_zone_end]
     curve = Engagement(run.frictions[index], angle, position, tooth, *values)
-    at_limit = [np.abs(radius * angle - peak.roll_distance) <= BESIDE for peak in limits]
+    at_limit = [np.abs(radius * angle - peak.roll_distance) <= BESIDE for peak in tip_limits]
     return replace(
         curve,
         at_zone_end=np.any([curve.at_zone_end.astype(bool), *at_limit], axis=0),
         zone_ends=tuple(
-            EngagementPeak(angle, peak.pressure, True, int((angle - run.angles[0]) // run.pitch))
+            EngagementPeak(angle, peak.pressure, peak.at_zone_end, int((angle - run.angles[0]) // run.pitch))
             for peak in limits for angle in [peak.roll_distance / radius]
         ),
+        relief_starts=tuple(start.roll_distance / radius for start in relief_starts(run.pair)),
     )  # fmt: skip
 
 
 def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[LinePeak]:
-    """Peaks of a spur pair at the limits of its tip-edge zones. A helical pair has none between positions: the slices
-    of its contact line enter the zones one by one, see `line_peak`."""
+    """Peaks of a spur pair at the limits of its tip-edge zones and of the zones about relief starts. A helical pair has
+    none between positions: the slices of its contact line enter the zones one by one, see `line_peak`."""
     if run.pair.pinion.base_helix_angle != 0.0:
         return []
-    return zone_end_peaks(run.pair, Slices.joined([each[index].cut for each in run.positions]), inner)
+    cut = Slices.joined([each[index].cut for each in run.positions])
+    return [*zone_end_peaks(run.pair, cut, inner), *relief_zone_peaks(run.pair, cut, inner)]
 
 
 def engagements(run: RunData, inner: tuple[float, float] | None = None) -> list[Engagement]:
@@ -159,6 +183,7 @@ def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, floa
             tooth.force * run.width,
             tooth.force / total,
             peak.pressure,
+            tooth.kink_pressure or np.nan,
             peak.at_zone_end,
             line_mean(solved.cut, tooth.tooth, inner),
             tooth.contact_length * run.width,
@@ -189,7 +214,7 @@ def _with_cuts(run: RunData, changed: Callable[[Slices], Slices]) -> RunData:
 
 def largest_peak(run: RunData, index: int) -> LinePeak:
     """The largest pressure of all positions and teeth at the friction coefficient with this index; on a spur pair also
-    at the limits of tip-edge zones between positions. `NO_PEAK` where no pressure is known."""
+    at the limits of zones between positions. `NO_PEAK` where no pressure is known."""
     radius = run.pair.pinion.base_radius
     if run.pair.pinion.base_helix_angle == 0.0:
         curve = engagement(run, index)

@@ -15,18 +15,14 @@ with which the kink is manufactured.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 
-import numpy as np
-
 from evolvent.fem.material import contact_modulus
 from evolvent.gears.pressure.contact_slices import Slices
-from evolvent.results.engagement import EngagementPeak
+from evolvent.gears.pressure.line_peaks import hertz_between
+from evolvent.gears.pressure.relief_starts import relief_starts
 from evolvent.results.run_data import RunData
-from evolvent_meshes.gears.member import Member
-from evolvent_meshes.gears.pair import GearPair
 
 
 @dataclass(frozen=True)
@@ -37,10 +33,8 @@ class ReliefKink:
     """Tip relief or root relief."""
     roll_distance: float
     """Roll distance ξ of the kink from the pitch point [mm]."""
-    half_range: float
-    """Roll distance on either side of the kink within which the contact covers it [mm]."""
     hertz: float
-    """Hertz' peak pressure for the largest line load near the kink [MPa]."""
+    """Hertz' peak pressure for the line load at the kink, the largest of all heights [MPa]."""
     pressure: float
     """Largest fitted peak pressure while the contact passes the kink [MPa]."""
 
@@ -55,37 +49,17 @@ def wedge_factor(k: float) -> float:
 def relief_kinks(run: RunData, index: int) -> list[ReliefKink]:
     """The kinks of a spur pair between its tip-edge zones, at the friction coefficient with this index. Empty for a
     helical pair, whose contact line crosses the kink at every position."""
-    if run.pair.pinion.base_helix_angle != 0.0:
-        return []
-    step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
     modulus = contact_modulus(*run.scene.materials())
     cut = Slices.joined([each[index].cut for each in run.positions])
     kinks = []
-    for relief, ξ, angle, roll in _kinks(run.pair):
-        hertz = np.where(np.abs(cut.roll_distance - ξ) <= step, cut.hertz, 0.0)
-        p0 = float(hertz.max(initial=0.0))
-        if run.inner_path[0] < ξ < run.inner_path[1] and p0 > 0.0:
-            radius = float(cut.radius[np.argmax(hertz)])
-            half_range = roll * radius * (2.0 * p0 / modulus + angle)  # Hertz' half-width, and the turn of the normal
-            kinks.append(ReliefKink(relief, ξ, half_range, p0, p0 * wedge_factor(angle * modulus / (pi * p0))))
+    for start in relief_starts(run.pair):
+        p0 = hertz_between(start.roll_distance, run.pair, cut)
+        if run.inner_path[0] < start.roll_distance < run.inner_path[1] and p0 > 0.0:
+            pressure = p0 * wedge_factor(start.angle * modulus / (pi * p0))
+            kinks.append(ReliefKink(start.relief, start.roll_distance, p0, pressure))
     return kinks
 
 
-def peak_over_kink(run: RunData, index: int, peak: EngagementPeak) -> ReliefKink | None:
-    """The kink at which the largest pressure of an engagement lies, or may lie between two positions; None where no
-    kink applies. peak: the engagement's largest pressure."""
-    ξ = run.pair.pinion.base_radius * peak.angle
-    relevant = [
-        kink for kink in relief_kinks(run, index)
-        if kink.pressure > peak.pressure or abs(ξ - kink.roll_distance) <= kink.half_range
-    ]  # fmt: skip
-    return max(relevant, key=lambda kink: kink.pressure, default=None)
-
-
-def _kinks(pair: GearPair) -> Iterator[tuple[str, float, float, float]]:
-    """For each linear tip or root relief: its term, roll distance ξ [mm], angle of the kink 2α [rad], derivative of ξ
-    by the flank's arc length."""
-    for member, gear, pitch_point in zip(Member, pair.gears, pair.pitch_point_roll_lengths):
-        for kink in gear.flank_depth.kinks:
-            roll = gear.base_radius / kink.roll_length  # an involute's arc is ρ²/2r_b
-            yield kink.relief, member.sign * (kink.roll_length - pitch_point), kink.turn * roll, roll
+def largest_kink(run: RunData, index: int) -> ReliefKink | None:
+    """The kink with the largest pressure, at the friction coefficient with this index; None where there is no kink."""
+    return max(relief_kinks(run, index), key=lambda kink: kink.pressure, default=None)

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from evolvent.gears.pressure.contact_slices import Slices, ToothSummary, slices, tooth_summaries
-from evolvent.gears.pressure.tip_zones import path_between_zones, row_before_tip
+from evolvent.gears.pressure.flank_facets import FlankFacets
+from evolvent.gears.pressure.tip_zones import path_between_zones
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import Archive, ArchiveError
@@ -103,9 +104,8 @@ class RunData:
     def inner_path(self) -> tuple[float, float]:
         """Roll distances [mm] between which no slice of any position bears on a tip edge."""
         cuts = [(solved.result, solved.cut) for each in self.positions for solved in each]
-        flanks = [flank_nodes(gear, shape) for gear, shape in zip(self.pair.gears, self.shapes)]
-        rows = [row_before_tip(flank.roll_length, self.scene.mesh.order) for flank in flanks]
-        return path_between_zones(self.pair, cuts, (rows[0], rows[1]))
+        pinion, wheel = flank_facets(self.pair, self.shapes, self.scene.mesh.order)
+        return path_between_zones(self.pair, cuts, (pinion.row_before_tip, wheel.row_before_tip))
 
     @cached_property
     def flank(self) -> FlankNodes:
@@ -118,6 +118,13 @@ def flank_nodes(gear: GearParameters, shape: GearShape) -> FlankNodes:
     return FlankNodes(gear, shape.points[shape.flank_nodes])
 
 
+def flank_facets(pair: GearPair, shapes: tuple[GearShape, GearShape], order: int) -> tuple[FlankFacets, FlankFacets]:
+    """The facets of both loaded flanks. order: of the cells."""
+    nodes = [flank_nodes(gear, shape) for gear, shape in zip(pair.gears, shapes)]
+    pinion, wheel = (FlankFacets.of(each.z, each.roll_length, each.gear.base_radius, order) for each in nodes)
+    return pinion, wheel
+
+
 def is_plane(shape: GearShape) -> bool:
     """Whether the shape comes from a 2D mesh."""
     return "face_low" not in shape.facets
@@ -127,10 +134,10 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
     """The run with these positions. Raises ArchiveError if there is no position."""
     if not swept:
         raise ArchiveError("wanted at least one position of the pitch, found none; let the run go on with --resume")
-    flank, materials = flank_nodes(scene.gear_pair().pinion, shapes[0]), scene.materials()
+    flanks, materials = flank_facets(scene.gear_pair(), shapes, scene.mesh.order), scene.materials()
 
     def solved(result: PositionResult) -> SolvedPosition:
-        cut = slices(result, flank.z, materials)
+        cut = slices(result, flanks, materials)
         return SolvedPosition(result, cut, tuple(tooth_summaries(result, cut)))
 
     return RunData(scene, shapes, tuple(tuple(solved(r) for r in position.results) for position in swept))

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from evolvent.contact.hertz import line_peak_pressure
-from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import line_mean, line_peak
 from evolvent.results.engagement import (
     Engagement,
@@ -23,7 +22,7 @@ from evolvent.results.engagement import (
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_lines
-from tests.support.synthetic_run import even_line_load, synthetic_run
+from tests.support.synthetic_run import even_line_load, resolved_slices, synthetic_run
 
 
 @pytest.fixture(scope="module")
@@ -127,7 +126,7 @@ def test_peak_at_a_zone_limit_follows_the_load(wider: float, run: RunData) -> No
     radius = np.where(edge, 1.0, wider) * run.pair.relative_curvature_radius(ξ)
     hertz = np.asarray(line_peak_pressure(load, radius, 115e3))
     ones, peak = np.ones(6), np.where(edge, np.nan, 1.03 * hertz)
-    cut = Slices(np.zeros(6, dtype=int), ones, ξ, ones, load, peak, peak, ones, hertz, radius, edge)
+    cut = resolved_slices(np.zeros(6, dtype=int), ones, ξ, ones, load, peak, peak, ones, hertz, radius, edge)
     exact = 1.03 * line_peak_pressure(500.0, wider * run.pair.relative_curvature_radius(-5.0), 115e3)
     assert line_peak(run.pair, cut, 0, (-5.0, 6.0)).pressure == pytest.approx(float(exact), rel=2e-3)
     assert peak[2] < 0.97 * exact
@@ -155,7 +154,8 @@ def test_round_off_does_not_decide_at_a_zone_limit() -> None:
     ones, peak = np.ones(3), np.array([10.0, 1.0, 1.0])
     for shift in (-1e-6, 0.0, 1e-6):
         ξ = np.array([-4.0 + shift, -3.0, -2.0])
-        cut = Slices(np.zeros(3, dtype=int), ones, ξ, ones, ones, peak, peak, ones, peak, ones, np.zeros(3, dtype=bool))
+        no = np.zeros(3, dtype=bool)
+        cut = resolved_slices(np.zeros(3, dtype=int), ones, ξ, ones, ones, peak, peak, ones, peak, ones, no)
         assert line_mean(cut, 0, (-4.0, 6.0)) == 1.0
 
 
@@ -183,13 +183,14 @@ def test_engagement_ends_where_the_force_is_zero(step: float) -> None:
 
 def _loaded(angle: Floats, force: Floats) -> Engagement:
     zero = np.zeros(len(angle))
-    return Engagement(0.0, angle, zero.astype(int), zero.astype(int), force, zero, zero, zero > 0.0, zero, zero)
+    none = zero.astype(int)
+    return Engagement(0.0, angle, none, none, force, zero, zero, zero, zero > 0.0, zero, zero)
 
 
 def _curve(friction: float, angle: Floats, pressure: Floats) -> Engagement:
     zero = np.zeros(len(angle))
     none = zero.astype(int)
-    return Engagement(friction, angle, none, none, zero, zero, pressure, zero > 0.0, pressure, zero)
+    return Engagement(friction, angle, none, none, zero, zero, pressure, np.nan * zero, zero > 0.0, pressure, zero)
 
 
 def test_crossing_finds_where_friction_turns_from_harm_to_relief() -> None:

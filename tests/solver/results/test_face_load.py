@@ -19,7 +19,7 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.arrays import Floats
 from tests.support.gear_cases import QUIET
-from tests.support.synthetic_run import synthetic_run
+from tests.support.synthetic_run import resolved_slices, synthetic_run
 
 COARSE = ("mesh.elements_per_contact_width=0.6", "sweep.positions=3", "contact.friction=0.0", *QUIET)
 
@@ -42,7 +42,7 @@ def loaded(run: RunData, load: Load) -> RunData:
         for number, tooth in enumerate(solved.teeth):
             share = (number + 1.0) / sum(range(1, len(solved.teeth) + 1))
             columns = z, 0.0 * z, width, share * force * cos_b / width, *[one] * 5, one < 0.0
-            parts.append(Slices(np.full(len(borne), tooth.tooth), *columns))
+            parts.append(resolved_slices(np.full(len(borne), tooth.tooth), *columns))
         return replace(solved, cut=Slices.joined(parts))
 
     positions = tuple((changed(each[0], k),) for k, each in enumerate(run.positions))

@@ -9,6 +9,9 @@ from evolvent_meshes.arrays import Floats
 FEWEST_CELLS = 2.0
 """Fewest elements across the contact width 2b_H without a warning: with fewer, errors of peak pressures reach 15 % and
 more, with 3 they are 3 % (docs/benchmark.md)."""
+FEWEST_FITTED = 1.5
+"""Fewest facets across Hertz' contact width for a fitted peak to be reported of a spur pair: with fewer, fitted peaks
+are up to 2.6 times Hertz' for the same load, with more they lie within 15 % (away from tip edges and relief starts)."""
 SCATTER = "may be off by 15 % and more and are for orientation only"
 """What warnings say of peak pressures on fewer elements."""
 HEIGHT_TOLERANCE = 1e-6

@@ -10,7 +10,10 @@ import numpy as np
 from evolvent.contact.hertz import line_peak_pressure
 from evolvent.fem.material import Material, contact_modulus
 from evolvent.gears.contact.contact_points import ContactPoints
+from evolvent.gears.pressure.contact_cells import FEWEST_FITTED
 from evolvent.gears.pressure.contact_curvature import nominal_radius, radius_in_place
+from evolvent.gears.pressure.flank_facets import FlankFacets
+from evolvent.gears.pressure.relief_starts import ContactWidth, over_relief_starts
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.pair import GearPair
@@ -48,11 +51,30 @@ class Slices:
     slice's pressure lies; on a tip edge, which has no curvature, that on the nominal contact line."""
     edge: Bools
     """(n,) bool, whether the slice bears on a tip edge."""
+    facet: Floats
+    """(n, 2) arc lengths of the facets of pinion and wheel in which the slice's nominal contact line lies [mm]."""
+    kink: Bools
+    """(n,) bool, whether the slice's contact covers the start of a linear tip or root relief of a spur pair, see
+    `relief_starts`."""
+    narrow: Bools
+    """(n,) bool, whether the contact of a spur pair is narrower by Hertz than `FEWEST_FITTED` facets of either flank. Its
+    line load is accurate, its fitted peak is not. On helical lines neighbouring slices make up for it."""
 
     @staticmethod
     def joined(parts: Sequence[Slices]) -> Slices:
         """The slices of several positions in one."""
         return Slices(*(np.concatenate([getattr(cut, each.name) for cut in parts]) for each in fields(Slices)))
+
+    @property
+    def contact_width(self) -> ContactWidth:
+        """Width of the contact by Hertz' half-width 2F/πp0 for the slice's line load; 0 without load."""
+        loaded = self.hertz > 0.0
+        half = np.where(loaded, 2.0 * self.line_load / (np.pi * np.where(loaded, self.hertz, 1.0)), 0.0)
+        return ContactWidth(self.roll_distance, half, self.radius, self.facet)
+
+    def of(self, chosen: Ints) -> Slices:
+        """These slices only. chosen: (k,) their indices."""
+        return Slices(*(getattr(self, each.name)[chosen] for each in fields(Slices)))
 
     def on_nominal_lines(self, pair: GearPair) -> Slices:
         """With Hertz' p0 for the curvatures on the nominal contact lines, which depends on the line loads alone."""
@@ -78,17 +100,19 @@ class ToothSummary:
     """Index of the tooth pair."""
     force: float
     """Normal force [N; N/mm in 2D]."""
-    max_pressure: float
-    """Largest fitted peak pressure away from tip edges [MPa]."""
     edge_pressure: float
     """Largest pressure on a tip edge [MPa]; 0 where none bears."""
+    kink_pressure: float
+    """Largest fitted peak pressure over the start of a linear relief [MPa]; 0 where the contact covers none."""
     contact_length: float
     """Length of the contact line [mm]."""
 
 
-def slices(result: PositionResult, heights: Floats, materials: tuple[Material, Material]) -> Slices:
-    """The slices of a position. heights: (n,) z of the pinion flank's nodes [mm]; materials: (pinion, wheel)."""
-    c, edges = result.contact, layer_edges(heights)
+def slices(
+    result: PositionResult, flanks: tuple[FlankFacets, FlankFacets], materials: tuple[Material, Material]
+) -> Slices:
+    """The slices of a position. flanks, materials: of pinion and wheel."""
+    c, edges = result.contact, layer_edges(flanks[0].z)
     tooth, layer, number = slice_numbers(c, edges)
     edge = np.bincount(number, c.edge, len(tooth)) > 0.0
     width = np.diff(edges)[layer]
@@ -98,7 +122,13 @@ def slices(result: PositionResult, heights: Floats, materials: tuple[Material, M
     hertz = line_peak_pressure(np.maximum(load, 0.0), radius, contact_modulus(*materials))
     largest, peak, half = _fits(c, number, load, edge)
     z = 0.5 * (edges[:-1] + edges[1:])[layer]
-    return Slices(tooth, z, ξ, width, load, peak, largest, half, hertz, radius, edge)
+    pair = result.stand.pair
+    facet = np.column_stack([flank.lengths_at(ρ) for flank, ρ in zip(flanks, pair.curvature_radii(ξ))])
+    cut = Slices(tooth, z, ξ, width, load, peak, largest, half, hertz, radius, edge, facet, *np.zeros((2, len(ξ)), dtype=bool))
+    if pair.pinion.base_helix_angle != 0.0:
+        return cut
+    narrow = 2.0 * cut.contact_width.half_width < FEWEST_FITTED * facet.max(axis=1)
+    return replace(cut, kink=~edge & over_relief_starts(pair, cut.contact_width), narrow=narrow)
 
 
 def slice_numbers(c: ContactPoints, edges: Floats) -> tuple[Ints, Ints, Ints]:
@@ -112,7 +142,17 @@ def slice_numbers(c: ContactPoints, edges: Floats) -> tuple[Ints, Ints, Ints]:
 
 def on_tip_edge(cut: Slices, tooth: int, z: Floats) -> Bools:
     """Whether heights z (n,) [mm] lie in (closed) layers in which a tooth pair bears on a tip edge: (n,) bool."""
-    layers = np.flatnonzero((cut.tooth == tooth) & cut.edge)
+    return _in_layers(cut, np.flatnonzero((cut.tooth == tooth) & cut.edge), z)
+
+
+def over_kink(cut: Slices, tooth: int, z: Floats) -> Bools:
+    """Whether heights z (n,) [mm] lie in (closed) layers in which the contact of a tooth pair covers the start of a
+    linear relief: (n,) bool."""
+    return _in_layers(cut, np.flatnonzero((cut.tooth == tooth) & cut.kink), z)
+
+
+def _in_layers(cut: Slices, layers: Ints, z: Floats) -> Bools:
+    """Whether heights z (n,) [mm] lie in the (closed) layers of these slices: (n,) bool."""
     away = np.abs(z[:, None] - cut.z[layers]) - 0.5 * cut.width[layers]
     return np.asarray((away <= HEIGHT_TOLERANCE).any(axis=1))
 
@@ -171,9 +211,9 @@ def tooth_summaries(result: PositionResult, cut: Slices) -> list[ToothSummary]:
     summaries = []
     for tooth in np.unique(cut.tooth):
         here = cut.tooth == tooth
-        peak = float(np.nanmax(cut.peak[here], initial=0.0))
         edge = float(cut.largest[here & cut.edge].max(initial=0.0))
+        kink = float(cut.peak[here & cut.kink].max(initial=0.0))
         points = result.contact.tooth == tooth
         force = float(np.sum(result.contact.pressure[points] * result.contact.weights[points]))
-        summaries.append(ToothSummary(int(tooth), force, peak, edge, float(cut.width[here].sum() / cos_b)))
+        summaries.append(ToothSummary(int(tooth), force, edge, kink, float(cut.width[here].sum() / cos_b)))
     return summaries

@@ -1,4 +1,5 @@
-"""Peak pressures along a contact line between the tip-edge zones, where the pressure is not singular."""
+"""Peak pressures along a contact line between the tip-edge zones, where the pressure is not singular, and away from the
+starts of linear reliefs, where it depends on how sharp the kink of the flank is."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from evolvent.gears.pressure.contact_curvature import nominal_radius
 from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.relief_starts import zone_limits
 from evolvent.gears.pressure.tip_zones import AT_LIMIT
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.pair import GearPair
@@ -15,12 +17,13 @@ from evolvent_meshes.gears.pair import GearPair
 
 @dataclass(frozen=True)
 class LinePeak:
-    """The largest peak pressure along a contact line between the tip-edge zones."""
+    """The largest peak pressure along a contact line between the tip-edge zones and away from relief starts."""
 
     roll_distance: float
-    """Where it stands [mm]; NaN where no part of the line lies between the zones."""
+    """Where it stands [mm]; NaN where there is none."""
     pressure: float
-    """Peak pressure [MPa]; NaN where no part of the line lies between the zones."""
+    """Peak pressure [MPa]; NaN where there is none: no part of the line lies between the zones, or the contact covers
+    the start of a relief."""
     at_zone_end: bool
     """It stands where a tip-edge zone begins, and the pressure may be larger further in."""
 
@@ -36,7 +39,7 @@ def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float
     """
     line = np.flatnonzero(cut.tooth == tooth)
     line = line[np.argsort(cut.roll_distance[line])]
-    fitted = line[has_peak(cut)[line]]
+    fitted = line[counts(cut)[line]]
     if len(fitted) == 0:
         return NO_PEAK
     ξ, over = cut.roll_distance[fitted], _over_hertz(cut, fitted)
@@ -53,10 +56,10 @@ def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float
 
 def pooled_peaks(cut: Slices) -> Floats:
     """Fitted peaks (n,) [MPa] of a position's slices, each averaged with its neighbours on the contact line as in
-    `line_peak`; NaN where a slice has none."""
+    `line_peak`; NaN where a slice has none that counts."""
     peaks = np.full(len(cut.peak), np.nan)
     for tooth in np.unique(cut.tooth):
-        line = np.flatnonzero((cut.tooth == tooth) & has_peak(cut))
+        line = np.flatnonzero((cut.tooth == tooth) & counts(cut))
         line = line[np.argsort(cut.roll_distance[line])]
         if len(line) == 0:
             continue
@@ -71,9 +74,9 @@ def _over_hertz(cut: Slices, fitted: Ints) -> Floats:
     The line load of a slice is accurate, its fitted width less so: it depends on how the contact lies in the cells,
     which changes from slice to slice as the line crosses them. The squared widths (second moments) are averaged: where
     the contact is 1.7 elements wide they are alternately 8 % too large and too small, and a maximum would select these
-    errors.
+    errors. Of narrow contacts (`Slices.narrow`) Hertz' peak is taken.
     """
-    square = (cut.hertz[fitted] / cut.peak[fitted]) ** 2
+    square = np.where(cut.narrow[fitted], 1.0, (cut.hertz[fitted] / cut.peak[fitted]) ** 2)
     summed, parts = (np.convolve(np.pad(each, 1), (1.0, 2.0, 1.0), "valid") for each in (square, np.ones_like(square)))
     return np.asarray(np.sqrt(parts / summed))
 
@@ -90,18 +93,23 @@ def zone_end_peaks(pair: GearPair, cut: Slices, inner: tuple[float, float]) -> l
     cut: the slices of all positions, which at each height form one line along the path of contact; inner: the limits,
     as roll distances [mm].
     """
-    heights = [np.flatnonzero(cut.z == z) for z in np.unique(cut.z)]
-    lines = [line[np.argsort(cut.roll_distance[line])] for line in heights]
+    lines = _lines(cut)
     return [max(peaks, key=lambda peak: peak.pressure) for x in inner if (peaks := _peaks_at(x, pair, cut, lines))]
+
+
+def _lines(cut: Slices) -> list[Ints]:
+    """The slices of all positions of a spur pair at each height, along the path of contact."""
+    heights = [np.flatnonzero(cut.z == z) for z in np.unique(cut.z)]
+    return [line[np.argsort(cut.roll_distance[line])] for line in heights]
 
 
 def _peaks_at(x: float, pair: GearPair, cut: Slices, lines: list[Ints]) -> list[LinePeak]:
     """The peaks at the roll distance x [mm], one a height at which an edge bears beyond it."""
     peaks = []
     for line in lines:
-        fitted = line[has_peak(cut)[line]]
         ξ = cut.roll_distance[line]
         beyond = cut.edge[line] & (np.abs(ξ) >= abs(x)) & (ξ * x > 0.0)
+        fitted = line[counts(cut)[line]]
         if len(fitted) and beyond.any():
             at = np.array([x])
             over = np.interp(at, cut.roll_distance[fitted], _over_hertz(cut, fitted))
@@ -109,9 +117,38 @@ def _peaks_at(x: float, pair: GearPair, cut: Slices, lines: list[Ints]) -> list[
     return peaks
 
 
+def relief_zone_peaks(pair: GearPair, cut: Slices, inner: tuple[float, float]) -> list[LinePeak]:
+    """The peaks of a spur pair where its contact begins to cover the start of a linear relief or ceases to, between two
+    positions: Hertz' for the load there, see `relief_starts`. cut, inner: see `zone_end_peaks`. Those within `AT_LIMIT`
+    of a slice are left out."""
+    peaks = []
+    for line in _lines(cut):
+        loaded, counting = line[cut.hertz[line] > 0.0], line[counts(cut)[line]]
+        if len(counting) == 0:
+            continue
+        places = cut.roll_distance[counting]
+        for x in zone_limits(pair, cut.of(loaded).contact_width):
+            if between(np.array([x]), inner).all() and np.abs(places - x).min() > AT_LIMIT:
+                peaks.append(LinePeak(x, float(_hertz_at(np.array([x]), pair, cut, loaded)[0]), False))
+    return peaks
+
+
 def has_peak(cut: Slices) -> Bools:
     """Whether a slice carries load and has a fitted peak, (n,) bool."""
     return np.asarray(np.isfinite(cut.peak) & (cut.hertz > 0.0))
+
+
+def hertz_between(x: float, pair: GearPair, cut: Slices) -> float:
+    """Largest of Hertz' peak pressures [MPa] at the roll distance x [mm], interpolated between the positions of a spur
+    pair, over all heights; 0 where x is beyond the positions. cut: see `zone_end_peaks`."""
+    lines = [line[cut.hertz[line] > 0.0] for line in _lines(cut)]
+    within = [line for line in lines if counts(cut)[line].any() and np.ptp(np.sign(cut.roll_distance[line] - x)) > 1.0]
+    return max((float(_hertz_at(np.array([x]), pair, cut, line)[0]) for line in within), default=0.0)
+
+
+def counts(cut: Slices) -> Bools:
+    """Whether a slice has a fitted peak and its contact covers no start of a linear relief, (n,) bool."""
+    return has_peak(cut) & ~cut.kink
 
 
 def between(ξ: Floats, inner: tuple[float, float]) -> Bools:

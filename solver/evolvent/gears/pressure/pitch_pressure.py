@@ -1,4 +1,4 @@
-"""The pressures of a pitch between its tip-edge zones, as `evolvent run` reports them."""
+"""The pressures of a pitch between its tip-edge zones and away from relief starts, as `evolvent run` reports them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import numpy as np
 
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.pressure.contact_slices import Slices, slices
-from evolvent.gears.pressure.line_peaks import NO_PEAK, LinePeak, line_peak, zone_end_peaks
-from evolvent.gears.pressure.tip_zones import path_between_zones, row_before_tip
+from evolvent.gears.pressure.flank_facets import FlankFacets
+from evolvent.gears.pressure.line_peaks import NO_PEAK, LinePeak, line_peak, relief_zone_peaks, zone_end_peaks
+from evolvent.gears.pressure.tip_zones import path_between_zones
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
@@ -30,12 +31,14 @@ class PitchPressure:
 
     @cached_property
     def at_positions(self) -> Floats:
-        """(k,) largest peak pressure between the tip-edge zones [MPa]; NaN where no part of the contact lies there."""
+        """(k,) largest peak pressure between the tip-edge zones and away from the starts of linear reliefs [MPa]; NaN
+        where no part of the contact lies there."""
         return np.array([_largest(self._line_peaks(cut)).pressure for cut in self.cuts])
 
     @cached_property
     def peak(self) -> LinePeak:
-        """The largest of all positions; on a spur pair also of the limits of tip-edge zones, which lie between them."""
+        """The largest of all positions; on a spur pair also of the limits of tip-edge zones and of the zones about
+        relief starts, which lie between them."""
         return _largest([*(peak for cut in self.cuts for peak in self._line_peaks(cut)), *self._zone_end_peaks()])
 
     def _line_peaks(self, cut: Slices) -> list[LinePeak]:
@@ -44,7 +47,8 @@ class PitchPressure:
     def _zone_end_peaks(self) -> list[LinePeak]:
         if self.pair.pinion.base_helix_angle != 0.0:
             return []
-        return zone_end_peaks(self.pair, Slices.joined(self.cuts), self.inner_path)
+        cut = Slices.joined(self.cuts)
+        return [*zone_end_peaks(self.pair, cut, self.inner_path), *relief_zone_peaks(self.pair, cut, self.inner_path)]
 
 
 def _largest(peaks: Sequence[LinePeak]) -> LinePeak:
@@ -52,11 +56,20 @@ def _largest(peaks: Sequence[LinePeak]) -> LinePeak:
     return max((peak for peak in peaks if np.isfinite(peak.pressure)), key=lambda peak: peak.pressure, default=NO_PEAK)
 
 
+def facets_of(gears: GearModel) -> tuple[FlankFacets, FlankFacets]:
+    """The facets of both loaded flanks."""
+    pinion, wheel = (
+        FlankFacets.of(body.z, body.roll_length, body.gear.base_radius, body.mesh.order) for body in gears.bodies
+    )
+    return pinion, wheel
+
+
 def pitch_pressures(gears: GearModel, positions: Sequence[tuple[PositionResult, ...]]) -> tuple[PitchPressure, ...]:
     """The pressures at each friction coefficient. positions: of each position the results at all coefficients."""
     pinion, wheel = gears.bodies
-    cuts = [[slices(result, pinion.z, (pinion.material, wheel.material)) for result in each] for each in positions]
-    rows = row_before_tip(pinion.roll_length, pinion.mesh.order), row_before_tip(wheel.roll_length, wheel.mesh.order)
+    flanks = facets_of(gears)
+    cuts = [[slices(result, flanks, (pinion.material, wheel.material)) for result in each] for each in positions]
+    rows = flanks[0].row_before_tip, flanks[1].row_before_tip
     known = [pair for results, row in zip(positions, cuts) for pair in zip(results, row)]
     inner = path_between_zones(gears.pair, known, rows)
     return tuple(PitchPressure(gears.pair, tuple(own), inner) for own in zip(*cuts))

@@ -23,9 +23,6 @@ AT_LIMIT = 0.01
 bears on the edge; with another mesh or friction coefficient that slice lies a micrometre beside it, and round-off must
 not decide whether it counts."""
 
-SAME_ROW = 1e-6
-"""Curvature radii closer than this are of one row of nodes [mm]; between the nodes of a coarser flank they scatter."""
-
 Cut = tuple[PositionResult, Slices]
 """A position and its slices."""
 
@@ -34,7 +31,7 @@ def path_between_zones(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, f
     """Limits of the tip-edge zones: the roll distances [mm] between which no slice bears on a tip edge.
 
     cuts: all positions with their slices; rows: transverse curvature radii [mm] at which the last row of facets before
-    the tip begins, of pinion and wheel (`row_before_tip`).
+    the tip begins, of pinion and wheel (`FlankFacets.row_before_tip`).
     """
     start, end = pair.path_of_contact
     if pair.pinion.base_helix_angle == 0.0:
@@ -68,11 +65,3 @@ def _reached(pair: GearPair, result: PositionResult, cut: Slices, k: int, gear: 
     outermost = float((c.across, c.opposite)[gear][here].max())
     squared = row**2 - 2.0 * pair.gears[gear].base_radius * outermost
     return float(np.sqrt(max(squared, 0.0))) - pair.pitch_point_roll_lengths[gear]
-
-
-def row_before_tip(roll_lengths: Floats, order: int) -> float:
-    """Curvature radius [mm] at which the last row of facets before the tip begins. roll_lengths: (n,) curvature radii
-    of the flank's nodes [mm]; order: of the facets."""
-    ordered = np.sort(roll_lengths)
-    rows = ordered[np.diff(ordered, prepend=-np.inf) > SAME_ROW]
-    return float(rows[-1 - order])

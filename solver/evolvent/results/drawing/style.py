@@ -28,10 +28,12 @@ INK, FAINT = "#222222", "#8a8f98"
 """Colours of text and main lines, and of auxiliary lines."""
 OVER = "#1f6fd0"
 """Colour of values above the upper end of a colour scale."""
-ABOVE = "blue: above the scale, at a tip edge"
+ABOVE = "blue: above the scale, at a tip edge or the start of a linear relief"
 """Note on that colour."""
 AT_ZONE_END = "at the limit of a tip-edge zone"
 """Legend of a pressure at the limit of a tip-edge zone."""
+OVER_KINK = "over the start of a linear relief"
+"""Legend of a pressure where the contact of a spur pair covers the kink at which a linear relief begins."""
 HOLLOW: dict[str, Any] = {"marker": "o", "markersize": 6.0, "markerfacecolor": "white", "linestyle": "", "zorder": 4.0}
 """Marker of a pressure at the limit of a tip-edge zone."""
 PRESSURE_MAP = LinearSegmentedColormap.from_list(

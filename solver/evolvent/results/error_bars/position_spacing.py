@@ -15,10 +15,9 @@ larger of this estimate and of one of the following:
   average, and the step in which it lies shows about half of J. The contributions of different intervals are
   independent.
 
-Three effects are added for the largest pressure. The curve of an engagement ends at the limits of the tip-edge zones:
-where it rises towards a limit, it may rise by one step's growth more. Where a linear tip or root relief begins the
-largest pressure is known in closed form (`relief_kinks`): the bar extends to it, and extrapolation there is limited to
-it.
+Two effects are added for the largest pressure. The curve of an engagement ends at the limits of the tip-edge zones:
+where it rises towards a limit, it may rise by one step's growth more. Where the contact of a spur pair covers the start
+of a linear relief the curve has a gap (`gears.pressure.relief_starts`), with limits that are interpolated.
 Fitted peaks scatter with the place of the contact in the cells: two standard deviations are allowed for the largest of
 many values exceeding the largest of few.
 
@@ -39,7 +38,6 @@ from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.engagement import Engagement, EngagementPeak, engagement
 from evolvent.results.face_load import FaceLoad, face_load
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
-from evolvent.results.relief_kinks import ReliefKink, relief_kinks
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent_meshes.arrays import Floats, Ints
 
@@ -72,7 +70,7 @@ def spacing_errors(run: RunData, index: int) -> FigureErrors:
     )
     largest = _apart(_largest(whole), [_largest(curve) for curve in thin])
     mean = [_mean(curve.mean_pressure, shares(kept, count)[curve.position]) for curve, kept in zip(thin, halves)]
-    scattered, excess = SCATTERS * scatter(whole.max_pressure), _excess(run, whole, relief_kinks(run, index))
+    scattered, excess = SCATTERS * scatter(whole.max_pressure), _excess(run, whole)
     return FigureErrors(
         max_pressure_MPa=_larger(largest, excess, scattered),
         mean_pressure_MPa=_larger(_apart(_mean(whole.mean_pressure), mean), _mean_bends(whole)),
@@ -181,26 +179,13 @@ def scatter(values: Floats) -> float:
     return float(np.median(np.abs(np.diff(known, 3)))) / DEVIATIONS / np.sqrt(20.0)
 
 
-def _excess(run: RunData, curve: Engagement, kinks: Sequence[ReliefKink]) -> float:
-    """Possible excess of the largest pressure [MPa] over the computed one: between positions, on kinks, and at the
-    limits of tip-edge zones."""
+def _excess(run: RunData, curve: Engagement) -> float:
+    """Possible excess of the largest pressure [MPa] over the computed one: between positions, and at the limits of
+    tip-edge zones."""
     step = run.pitch / len(run.positions)
-    ends = [end.pressure + step * _rise(curve, end) for end in curve.zone_ends]
-    angle, pressure = curve.pressure_curve
-    top = limited_on_kinks(run.pair.pinion.base_radius * angle, tops((angle, pressure), jumps=True), kinks)
+    ends = [end.pressure + step * _rise(curve, end) for end in curve.zone_ends if end.at_zone_end]
     largest = _largest(curve)
-    return float(np.nanmax([largest, *top, *ends, *(kink.pressure for kink in kinks)])) - largest
-
-
-def limited_on_kinks(ξ: Floats, top: Floats, kinks: Sequence[ReliefKink]) -> Floats:
-    """Largest values (n − 3,) [MPa] between samples, limited to the closed-form pressure in intervals where the contact
-    covers a kink. ξ: (n,) roll distances of the samples [mm]; top: (n − 3,) values of `tops` [MPa]."""
-    most = np.full(len(top), -np.inf)
-    for kink in kinks:
-        start, end = kink.roll_distance - kink.half_range, kink.roll_distance + kink.half_range
-        covered = (ξ[1:-2] < end) & (ξ[2:-1] > start)
-        most[covered] = np.maximum(most[covered], kink.pressure)
-    return np.where(np.isfinite(most), np.minimum(top, most), top)
+    return float(np.nanmax([largest, *tops(curve.pressure_curve, jumps=True), *ends])) - largest
 
 
 def _rise(curve: Engagement, end: EngagementPeak) -> float:
@@ -248,7 +233,7 @@ def _larger(*estimates: float) -> float:
 
 def _largest(curve: Engagement) -> float:
     """The largest pressure of an engagement [MPa]; NaN where none is known."""
-    return curve.peak.pressure if np.isfinite(curve.max_pressure).any() else float("nan")
+    return curve.peak.pressure
 
 
 def _mean(values: Floats, weights: Floats | None = None) -> float:

@@ -6,8 +6,10 @@
 
 Arrays of the flanks for each friction coefficient, with names such as "pressure_MPa (mu=0.07)":
 
-    pressure_MPa       contact pressure; NaN in layers of cells that bear on a tip edge
-    edge_pressure_MPa  contact pressure in these layers, 0 elsewhere
+    pressure_MPa       contact pressure; NaN in layers of cells that bear on a tip edge, or whose contact covers the
+                       start of a linear relief of a spur pair
+    edge_pressure_MPa  contact pressure in layers that bear on a tip edge, 0 elsewhere
+    kink_pressure_MPa  contact pressure in layers whose contact covers the start of a relief, 0 elsewhere
     traction_MPa       contact traction on the pinion, pressure and friction, as a vector in space; NaN as pressure_MPa
     slip_mm_per_rad    velocity of the pinion's flank relative to the wheel's per rad/s of pinion speed
     sticks             1 at sticking nodes, else 0
@@ -26,7 +28,7 @@ from xml.etree import ElementTree
 import numpy as np
 from scipy.spatial import cKDTree
 
-from evolvent.gears.pressure.contact_slices import on_tip_edge
+from evolvent.gears.pressure.contact_slices import on_tip_edge, over_kink
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.fields.flank_field import flank_field, line_distance
@@ -91,19 +93,22 @@ def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: Member
     }
     for each in solved:
         values_of = _pinion_values if gear == Member.PINION else _wheel_values
-        values = _without_edges(values_of(run, each.result, tooth), on_tip_edge(each.cut, tooth, nodes.z))
+        edge, kink = (layers(each.cut, tooth, nodes.z) for layers in (on_tip_edge, over_kink))
+        values = _apart(values_of(run, each.result, tooth), edge, kink & ~edge)
         arrays |= {f"{name} (mu={each.result.friction:g})": value for name, value in values.items()}
     return {name: on_flank(shape, value) for name, value in arrays.items()}
 
 
-def _without_edges(values: Arrays, edge: Bools) -> Arrays:
-    """The arrays with the pressures on tip edges in an array of their own. edge: (n,) bool, nodes on a tip edge."""
+def _apart(values: Arrays, edge: Bools, kink: Bools) -> Arrays:
+    """The arrays with the pressures on tip edges and over relief starts in arrays of their own. edge, kink: (n,) bool,
+    nodes in layers that bear on a tip edge, or whose contact covers the start of a relief."""
     pressure = values["pressure_MPa"]
-    bears = edge & (pressure > 0.0)
+    apart = (edge | kink) & (pressure > 0.0)
     return values | {
-        "pressure_MPa": np.where(bears, np.nan, pressure),
-        "traction_MPa": np.where(bears[:, None], np.nan, values["traction_MPa"]),
-        "edge_pressure_MPa": np.where(bears, pressure, 0.0),
+        "pressure_MPa": np.where(apart, np.nan, pressure),
+        "traction_MPa": np.where(apart[:, None], np.nan, values["traction_MPa"]),
+        "edge_pressure_MPa": np.where(apart & edge, pressure, 0.0),
+        "kink_pressure_MPa": np.where(apart & kink, pressure, 0.0),
     }
 
 

@@ -9,8 +9,9 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from evolvent.gears.pressure.contact_slices import Slices, on_tip_edge
+from evolvent.gears.pressure.contact_slices import Slices, on_tip_edge, over_kink
 from evolvent.gears.pressure.line_peaks import pooled_peaks
+from evolvent.gears.pressure.relief_starts import relief_starts
 from evolvent.results.drawing.style import ABOVE, INK, PRESSURE_MAP, foot, sheet
 from evolvent.results.engagement import largest_peak
 from evolvent.results.fields.flank_field import flank_field, flank_patch
@@ -52,8 +53,8 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
 def pressure_top(run: RunData, index: int) -> float:
     """Upper end of the colour scale [MPa]: the largest of the reported pressure, the envelope, and nodal pressures
     between the tip-edge zones, rounded up. Layers that bear on a tip edge are left out, since their pressure is
-    singular beside the edge too."""
-    low, high = run.inner_path
+    singular beside the edge too, and layers whose contact covers the start of a linear relief."""
+    (low, high), z = run.inner_path, run.flank.z
     headline = largest_peak(run, index).pressure
     largest = [headline if np.isfinite(headline) else 0.0]
     _, over_face = envelope(run, index, _path(run))
@@ -62,7 +63,7 @@ def pressure_top(run: RunData, index: int) -> float:
         ξ = run.flank.roll_length[result.node] - run.pair.pitch_point_roll_lengths[0]
         for tooth in np.unique(result.tooth):
             away = (result.tooth == tooth) & (low <= ξ) & (ξ <= high)
-            away &= ~on_tip_edge(cut, int(tooth), run.flank.z[result.node])
+            away &= ~(on_tip_edge(cut, int(tooth), z[result.node]) | over_kink(cut, int(tooth), z[result.node]))
             largest.append(float(result.pressure[away].max(initial=0.0)))
     return float(100.0 * max(1.0, np.ceil(max(largest) / 100.0)))
 
@@ -71,7 +72,8 @@ def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
     """Heights (h,) [mm] and fitted peak pressures (len(ξ), h) [MPa] at roll distances ξ (n,) [mm] over the engagement.
 
     The contact line passes each height once in an engagement, so that the peaks of all positions of the pitch form one
-    curve over ξ there. NaN where no position lies near, or only on a tip edge.
+    curve over ξ there. NaN where no position lies near, or only on a tip edge, and where the contact of a spur pair
+    covers the start of a linear relief.
     """
     cuts = [each[index].cut for each in run.positions]
     whole = Slices.joined(cuts)
@@ -193,4 +195,5 @@ def _map_subtitle(run: RunData, index: int) -> str:
     side = "below the pitch line, towards the root" if ξ < 0 else "above the pitch line, towards the tip"
     where = f"at ξ = {signed(ξ, 2)} mm, {side}" if np.isfinite(ξ) else "nowhere"
     subtitle = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, occurs {where}"
-    return subtitle + "; dashed: contact lines of rigid flanks."
+    blank = "; blank: linear reliefs begin" if relief_starts(run.pair) else ""
+    return f"{subtitle}; dashed: contact lines of rigid flanks{blank}."

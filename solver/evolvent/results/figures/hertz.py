@@ -12,7 +12,7 @@ from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.results.archive.error_bar_data import plus_minus
-from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, PINION, dot_size, foot, note, sheet
+from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, OVER_KINK, PINION, dot_size, foot, note, sheet
 from evolvent.results.drawing.teeth import compares_yang
 from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import cells_across, few_cells_across
@@ -32,7 +32,8 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     cut = Slices.joined([each[index].cut for each in run.positions])
     ξ, peak, hertz = cut.roll_distance, cut.peak, cut.hertz
     start, end = run.pair.path_of_contact
-    inside = np.isfinite(peak) & (ξ > start) & (ξ < end)
+    within = np.isfinite(peak) & (ξ > start) & (ξ < end)
+    inside, kink = within & ~cut.kink, within & cut.kink
     ratio = peak[inside] / hertz[inside] - 1.0
     middle, most = signed(100 * float(np.median(ratio))), 100 * np.quantile(np.abs(ratio), 0.9)
     subtitle = f"Difference from Hertz for a slice's own line load: median {middle} %"
@@ -60,6 +61,8 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
         alpha=0.5,
         label="Hertz, the slice's line load",
     )
+    if kink.any():
+        along.plot(ξ[kink], peak[kink], "x", color=FAINT, markersize=4.0, label=f"computed, {OVER_KINK}")
     estimate, line = run.scene.hertz_estimate(), np.linspace(start, end, 200)
     uniform = "Hertz, uniform load on the mean line length"
     along.plot(line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label=uniform)

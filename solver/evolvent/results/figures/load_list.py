@@ -54,14 +54,24 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
         axes.set_xlim(0.0, 1.05 * torques[-1])
         axes.set_xlabel("torque [N·m]")
         axes.set_ylabel(label)
+    kinks = _draw_kinks(grid[1, 0], results, frictions)
     if len(frictions) > 1:
         grid[0, 1].legend(loc="best")
     foot(
         figure,
         "Bars: estimated error, of mesh and spacing of positions. Hollow: a tip edge bears at some positions.",
         "Pressure: between tip-edge zones; square: at the end of such a zone, where it varies beyond its bar.",
+        *(["Pressure: away from the starts of linear reliefs; dotted: over them, for an ideal kink."] if kinks else []),
     )
     return figure
+
+
+def _draw_kinks(axes: Axes, results: Sequence[LoadResult], frictions: Sequence[float]) -> bool:
+    """Dotted lines of the pressure over the starts of linear reliefs; whether there are any."""
+    for friction, colour in zip(frictions, friction_colours(frictions)):
+        own = [each.row for each in results if each.row.friction == friction]
+        axes.plot([row.torque_Nm for row in own], [row.kink_pressure_MPa for row in own], ":", color=colour)
+    return bool(np.isfinite([each.row.kink_pressure_MPa for each in results]).any())
 
 
 def _draw_curves(axes: Axes, results: Sequence[LoadResult]) -> None:

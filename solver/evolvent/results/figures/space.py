@@ -30,7 +30,8 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     teeth = run.positions[k][index].teeth
     peak = position_row(run, run.positions[k][index]).max_pressure_MPa
     load = f"{run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}"
-    subtitle = f"{load}: {len(teeth)} tooth pairs in contact, at most {peak:.0f} MPa at this position"
+    largest = f", at most {peak:.0f} MPa at this position" if np.isfinite(peak) else ""
+    subtitle = f"{load}: {len(teeth)} tooth pairs in contact{largest}"
     subtitle += f" (φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g})."
     figure = sheet(f"{run.scene.title}: pressure on the flanks", subtitle, (12.4, 7.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
@@ -63,9 +64,9 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
 
 
 def most_loaded_position(run: RunData, index: int) -> int:
-    """Index of the position with most teeth in contact, and among these with the largest pressure."""
-    keys = [(len(each[index].teeth), position_row(run, each[index]).max_pressure_MPa) for each in run.positions]
-    return max(range(len(keys)), key=keys.__getitem__)
+    """Index of the position with most teeth in contact, and among these with the largest pressure that is known."""
+    largest = np.nan_to_num([position_row(run, each[index]).max_pressure_MPa for each in run.positions])
+    return max(range(len(largest)), key=lambda k: (len(run.positions[k][index].teeth), largest[k]))
 
 
 def _image(axes: Axes, image: NDArray[np.uint8], title: str) -> None:

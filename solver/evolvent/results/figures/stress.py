@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,10 +17,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from evolvent.results.archive.error_bar_data import plus_minus
-from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, foot, friction_colours, sheet
+from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, OVER_KINK, foot, friction_colours, sheet
 from evolvent.results.drawing.teeth import long_name, short_name, shown_teeth
 from evolvent.results.engagement import Engagement, EngagementPeak, crossing, engagement, engagements, with_hertz
 from evolvent.results.mesh_facts import cells_across, few_cells_across
+from evolvent.results.relief_kinks import largest_kink
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import few_positions
@@ -28,6 +30,8 @@ from evolvent_meshes.arrays import Bools, Floats
 
 STRESS = "maximum contact stress [MPa]"
 TOOTH_ANGLE = "pinion rotation [°]   (0: tooth pair in contact at the pitch point, mid-face)"
+CROSS: dict[str, Any] = {"marker": "x", "markersize": 4.0, "linestyle": ""}
+"""Marker of a pressure over the start of a linear relief."""
 MEDIAN = 5
 """Number of positions of the running median where the mesh does not resolve the contact."""
 
@@ -44,18 +48,19 @@ def engagement_stress(run: RunData) -> Figure:
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
     between = f"The largest stress is taken between the tip-edge zones, from ξ = {low} to {high} mm."
-    foot(figure, between, *_resolved(run), *_sampled(run))
+    foot(figure, between, *_away_from_kinks(run), *_resolved(run), *_sampled(run))
     for curve, colour in zip(curves, friction_colours(run.frictions)):
         for end in _zone_ends(curve):
             main.plot(np.degrees(end.angle), end.pressure, color=colour, **HOLLOW)
+        main.plot(np.degrees(curve.angle), curve.kink_pressure, color=colour, **CROSS)
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=TOOTH_ANGLE, ylabel=STRESS)
-    values = np.concatenate([c.pressure_curve[1] for c in curves])
+    values = np.concatenate([[*c.pressure_curve[1], *c.kink_pressure] for c in curves])
     largest = _lowest(curves).peak.pressure + np.array([-1.0, 1.0]) * bar  # NaN: no bar
     bottom, top = np.nanmin([0.6 * np.nanmin(values), largest[0]]), np.nanmax([np.nanmax(values), largest[1]])
     main.set_ylim(max(0.0, 0.92 * bottom), 1.06 * top)
-    handles = [*main.get_legend_handles_labels()[0], *_keys(run, any(_zone_ends(curve) for curve in curves))]
+    handles = [*main.get_legend_handles_labels()[0], *_keys(run, curves)]
     columns = 3 if len(handles) in (5, 6) else 4
     main.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns)
     if detail is not None:
@@ -103,17 +108,22 @@ def _curves(
 
 def _zone_ends(curve: Engagement) -> list[EngagementPeak]:
     """Peaks at the limits of tip-edge zones: those of a spur pair, and the largest pressure if it is one."""
-    return list(dict.fromkeys([*curve.zone_ends, *([curve.peak] if curve.peak.at_zone_end else [])]))
+    return [peak for peak in dict.fromkeys([*curve.zone_ends, curve.peak]) if peak.at_zone_end]
 
 
-def _keys(run: RunData, zone_ends: bool) -> list[Line2D]:
-    """Entries of the legend for points, lines and hollow markers."""
+def _keys(run: RunData, curves: Sequence[Engagement]) -> list[Line2D]:
+    """Entries of the legend for points, lines, hollow markers and crosses."""
     coarse = [
         Line2D([], [], color=FAINT, linestyle="", marker=".", markersize=6.0, label="computed"),
         Line2D([], [], color=FAINT, label="Hertz × running median"),
     ]
     hollow = [Line2D([], [], color=FAINT, label=AT_ZONE_END, **HOLLOW)]
-    return [*(coarse if few_cells_across(run) else ()), *(hollow if zone_ends else ())]
+    crosses = [Line2D([], [], color=FAINT, label=OVER_KINK, **CROSS)]
+    return [
+        *(coarse if few_cells_across(run) else ()),
+        *(hollow if any(_zone_ends(curve) for curve in curves) else ()),
+        *(crosses if any(np.isfinite(curve.kink_pressure).any() for curve in curves) else ()),
+    ]
 
 
 def smoothed(run: RunData, curves: Sequence[Engagement]) -> list[Engagement]:
@@ -132,6 +142,17 @@ def _resolved(run: RunData) -> list[str]:
     return [
         f"Only {cells_across(run):.1f} elements across the contact: points as computed; lines: Hertz for the same loads"
         f" times the running median, over {MEDIAN} positions, of computed over Hertz."
+    ]
+
+
+def _away_from_kinks(run: RunData) -> list[str]:
+    """Footnote with the pressure over the start of a linear relief, where there is one, else none."""
+    kink = largest_kink(run, int(np.argmin(run.frictions)))
+    if kink is None:
+        return []
+    return [
+        f"It is that away from the starts of linear reliefs: where {kink.relief} begins, ξ = "
+        f"{signed(kink.roll_distance, 2)} mm, a sharp kink has about {kink.pressure:.0f} MPa (closed form)."
     ]
 
 

@@ -14,7 +14,7 @@ from evolvent.results.error_bars.position_spacing import spacing_errors
 from evolvent.results.face_load import face_load
 from evolvent.results.mesh_facts import few_cells_across
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
-from evolvent.results.relief_kinks import peak_over_kink
+from evolvent.results.relief_kinks import largest_kink
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.shaft_forces import shaft_forces
 from evolvent.results.tables.summary_rows import FrictionRow, PositionRow, ToothRow
@@ -46,7 +46,8 @@ def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
         transmission_error_um=transmission_error_um(run, solved),
         mesh_stiffness_N_per_mm_um=mesh_stiffness(run, solved),
         secant_stiffness_N_per_mm_um=secant_stiffness(run, solved),
-        max_pressure_MPa=float(np.nanmax([tooth.max_pressure_MPa for tooth in teeth])),
+        max_pressure_MPa=float(np.fmax.reduce([tooth.max_pressure_MPa for tooth in teeth])),
+        kink_pressure_MPa=max(tooth.kink_pressure_MPa for tooth in teeth),
         tip_edge=any(tooth.edge_pressure > 0.0 for tooth in solved.teeth),
         loss_percent=loss_percent(run, solved),
         newton_iterations=result.iterations,
@@ -58,7 +59,8 @@ def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
 
 def _tooth_row(run: RunData, solved: SolvedPosition, tooth: ToothSummary) -> ToothRow:
     length, peak = tooth.contact_length * run.width, line_peak(run.pair, solved.cut, tooth.tooth, run.inner_path)
-    return ToothRow(tooth.tooth, tooth.force * run.width, peak.pressure, length, tooth.edge_pressure)
+    force = tooth.force * run.width
+    return ToothRow(tooth.tooth, force, peak.pressure, length, tooth.edge_pressure, tooth.kink_pressure)
 
 
 def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> list[FrictionRow]:
@@ -71,7 +73,7 @@ def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> lis
 def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagement) -> FrictionRow:
     results = [each[index].result for each in run.positions]
     errors = 1e3 * np.array([result.transmission_error for result in results])
-    top = curve.peak
+    top, kink = curve.peak, largest_kink(run, index)
     crosses = curve is not lowest and not few_cells_across(run)  # on few cells scatter causes crossings
     loss = sum(r.friction_loss for r in results) / sum(r.torques[0] for r in results)
     return FrictionRow(
@@ -79,7 +81,8 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         max_pressure_MPa=top.pressure,
         max_pressure_angle_deg=degrees(top.angle),
         max_pressure_at_zone_end=top.at_zone_end,
-        max_pressure_at_relief_start=peak_over_kink(run, index, top) is not None,
+        kink_pressure_MPa=kink.pressure if kink else math.nan,
+        kink_pressure_angle_deg=degrees(kink.roll_distance / run.pair.pinion.base_radius) if kink else math.nan,
         mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
         mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),

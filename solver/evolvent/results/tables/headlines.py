@@ -9,8 +9,11 @@ from typing import Any
 
 from evolvent.results.archive.error_bar_data import plus_minus
 
+LARGEST, AWAY = "largest pressure", "largest pressure away from relief starts"
+"""Name of the largest pressure, and that beside the pressure over the start of a linear relief."""
 FIGURES = (
-    ("max_pressure_MPa", "largest pressure", "MPa", 0),
+    ("max_pressure_MPa", LARGEST, "MPa", 0),
+    ("kink_pressure_MPa", "over the sharp start of a linear relief about", "MPa", 0),
     ("transmission_error_peak_to_peak_um", "transmission error", "µm peak to peak", 2),
     ("mesh_stiffness_N_per_mm_um", "mesh stiffness", "N/(mm·µm)", 1),
     ("loss_percent", "loss", "%", 2),
@@ -32,8 +35,9 @@ def headlines(summary: Path) -> list[str]:
 def _texts(row: Mapping[str, Any]) -> list[str]:
     bars = row["estimated_error"] or {}
     known = [figure for figure in FIGURES if _said(figure[0], row.get(figure[0]))]
+    names = {LARGEST: AWAY} if row.get("kink_pressure_MPa") is not None else {}
     return [
-        f"{name} {plus_minus(row[key], bars.get(key) or 0.0, digits)} {unit}".rstrip()
+        f"{names.get(name, name)} {plus_minus(row[key], bars.get(key) or 0.0, digits)} {unit}".rstrip()
         for key, name, unit, digits in known
     ]
 

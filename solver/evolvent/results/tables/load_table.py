@@ -32,14 +32,15 @@ class LoadRow:
     transmission_error_peak_to_peak_um_error: float
     """Its estimated error, as in summary.json; NaN where the run has none."""
     max_pressure_MPa: float
-    """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones."""
+    """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones and away from the starts
+    of linear reliefs, as in summary.json."""
     max_pressure_MPa_error: float
     """Its estimated error."""
     max_pressure_at_zone_end: bool
     """As in summary.json: its value depends on where a tip-edge zone ends, and so on the mesh, which its error bar
     leaves out."""
-    max_pressure_at_relief_start: bool
-    """As in summary.json: its value depends on how sharp the kink of the flank is."""
+    kink_pressure_MPa: float
+    """As in summary.json: over the start of a linear relief, for an ideal kink; NaN where there is none."""
     mean_pressure_MPa: float
     """As in summary.json; it depends less on the mesh than the largest one, so that torques can be compared by it."""
     mean_pressure_MPa_error: float
@@ -98,7 +99,6 @@ def _result(summary: Mapping[str, Any], row: Mapping[str, Any]) -> LoadResult:
         "friction": row["friction"],
         "transmission_error_mean_um": fmean(error),
         "max_pressure_at_zone_end": row["max_pressure_at_zone_end"],
-        "max_pressure_at_relief_start": row["max_pressure_at_relief_start"],
         "tip_edge_positions": sum(each["tip_edge"] for each in positions),
         "cells_across_contact_width": _number(summary["mesh"]["cells_across_contact_width"]),
         "warnings": len(summary["warnings"]),

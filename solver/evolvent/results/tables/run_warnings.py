@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
-from evolvent.results.engagement import engagements, largest_peak
+from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import MeshFacts
-from evolvent.results.relief_kinks import peak_over_kink
+from evolvent.results.relief_kinks import largest_kink
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
@@ -120,19 +120,19 @@ def _edge_share(solved: SolvedPosition) -> float:
 
 
 def _about_relief(run: RunData) -> Iterator[str]:
-    """Warning of a largest pressure where a linear tip or root relief begins."""
-    curves = [(k, curve) for k, curve in enumerate(engagements(run)) if np.isfinite(curve.max_pressure).any()]
-    kinks = [kink for k, curve in curves if (kink := peak_over_kink(run, k, curve.peak)) is not None]
+    """Warning of a pressure over the start of a linear tip or root relief that exceeds the largest one away from it."""
+    kinks = [
+        kink for index in range(len(run.frictions))
+        if (kink := largest_kink(run, index)) is not None and not kink.pressure <= largest_peak(run, index).pressure
+    ]  # fmt: skip
     if not kinks:
         return
     kink = max(kinks, key=lambda kink: kink.pressure)
-    step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
     yield (
-        f"The largest pressure occurs, or may occur between positions, where a linear {kink.relief} begins "
-        f"(ξ = {signed(kink.roll_distance, 2)} mm): over that kink of the flank Hertz' pressure rises from "
-        f"{brief(kink.hertz)} to about {brief(kink.pressure)} MPa within {2.0 * kink.half_range:.2g} mm, positions are "
-        f"{step:.2g} mm apart, and the rise depends on how sharp the kink is manufactured; take "
-        f'{kink.relief.replace(" ", "_")}_form = "parabolic", or more positions (sweep.positions).'
+        f"Where a linear {kink.relief} begins (ξ = {signed(kink.roll_distance, 2)} mm) the flank has a kink: over it "
+        f"Hertz' pressure rises from {brief(kink.hertz)} to about {brief(kink.pressure)} MPa (kink_pressure_MPa), more "
+        "than the largest pressure, which is that away from relief starts; the rise depends on how sharp the kink is "
+        f'manufactured; take {kink.relief.replace(" ", "_")}_form = "parabolic".'
     )
 
 

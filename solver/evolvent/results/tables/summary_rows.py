@@ -15,7 +15,7 @@ from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.shaft_forces import ShaftForces
 from evolvent.scene.skips import Skipped
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 """Version of the form of summary.json: raised where a key is removed, renamed or changes its meaning, not for new
 keys."""
 
@@ -56,12 +56,16 @@ class ToothRow:
     """Normal force on the pair."""
     max_pressure_MPa: float
     """Largest contact pressure between the tip-edge zones, fitted in each slice and, on a helical line, averaged with
-    the neighbouring slices (1:2:1); null where no slice lies between these zones."""
+    the neighbouring slices (1:2:1); null where no slice lies between these zones, and where the contact of a spur pair
+    covers the start of a linear tip or root relief."""
     contact_length_mm: float
     """Length of the contact line under load."""
     edge_pressure_MPa: float
     """Largest pressure on a tip edge, 0 where no edge bears. The pressure there is singular: its value depends on the
     mesh."""
+    kink_pressure_MPa: float
+    """Largest contact pressure, fitted in each slice, where the contact of a spur pair covers the start of a linear tip
+    or root relief; 0 where it covers none. Over that kink of the flank it depends on how sharp the kink is."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,11 @@ class PositionRow:
     """Secant stiffness: force over face width and transmission error, in which flank modifications count as deflection;
     null where a flank has a chart."""
     max_pressure_MPa: float
-    """Largest contact pressure of all teeth between the tip-edge zones."""
+    """Largest contact pressure of all teeth between the tip-edge zones and away from the starts of linear reliefs; null
+    where there is none."""
+    kink_pressure_MPa: float
+    """Largest contact pressure of all teeth over the start of a linear tip or root relief of a spur pair; 0 where the
+    contact covers none."""
     tip_edge: bool
     """Whether a tooth bears on a tip edge, where the pressure is singular."""
     loss_percent: float
@@ -110,15 +118,20 @@ class FrictionRow:
     """Coulomb friction coefficient μ."""
     max_pressure_MPa: float
     """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones: peak p0 of the
-    half-ellipse with a slice's line load and second moment."""
+    half-ellipse with a slice's line load and second moment. On a spur pair it is that away from the starts of linear
+    tip and root reliefs, whose contact does not cover the kink that the flank has there."""
     max_pressure_angle_deg: float
     """Pinion rotation of the tooth at which it occurs; 0 is the pitch point at mid-face."""
     max_pressure_at_zone_end: bool
     """Whether it lies at the limit of a tip-edge zone, so that its value depends on the place of that limit, and so on
     the mesh, which its error bar leaves out."""
-    max_pressure_at_relief_start: bool
-    """Whether it lies, or may lie between two positions, where a linear tip or root relief begins. Over that kink
-    of the flank its value depends on how sharp the kink is."""
+    kink_pressure_MPa: float
+    """Largest contact pressure of a spur pair while the contact passes the start of a linear tip or root relief, p0 as
+    above: Hertz' pressure for the load there times a factor of the kink's angle, in closed form, for an ideal kink of
+    flanks that are not worn. A manufactured kink is rounder. null where no such relief begins between the tip-edge
+    zones, and for helical pairs, whose contact line crosses the kink at every position."""
+    kink_pressure_angle_deg: float
+    """Pinion rotation of the tooth at which the nominal contact passes that start of a relief; null as above."""
     mean_pressure_MPa: float
     """Mean over the engagement of the peak pressure p0 across the contact, averaged along the line between the tip-edge
     zones."""

@@ -51,7 +51,10 @@ class PairReport:
     wheel: GearReport
     """Its wear."""
     max_pressure_MPa: float
-    """Largest contact pressure of a tooth's engagement."""
+    """Largest contact pressure of a tooth's engagement, away from the starts of linear reliefs."""
+    kink_pressure_MPa: float
+    """Contact pressure over the start of a linear relief, for the ideal kink of flanks that are not worn; null where
+    there is none."""
     transmission_error_peak_to_peak_um: float
     """Largest minus smallest transmission error of the pitch."""
     mesh_stiffness_N_per_mm_um: float
@@ -109,7 +112,7 @@ class WornPair:
         row = friction_rows(self.run)[0]
         return PairReport(
             self.cycles, self._gear(Member.PINION), self._gear(Member.WHEEL), row.max_pressure_MPa,
-            row.transmission_error_peak_to_peak_um, row.mesh_stiffness_N_per_mm_um, row.loss_percent, row.balance_error,
+            row.kink_pressure_MPa, row.transmission_error_peak_to_peak_um, row.mesh_stiffness_N_per_mm_um, row.loss_percent, row.balance_error,
         )  # fmt: skip
 
     def _gear(self, gear: Member) -> GearReport:

@@ -11,7 +11,7 @@ from evolvent.contact.hertz import line_half_width, line_peak_pressure
 from evolvent.fem.material import contact_modulus
 from evolvent.gears.pressure.contact_slices import Slices, slices
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.run_data import RunData
+from evolvent.results.run_data import RunData, flank_facets
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.synthetic_run import synthetic_run
@@ -48,7 +48,7 @@ def slice_of(result: PositionResult, cut: Slices) -> Ints:
 
 def again(run: RunData, result: PositionResult) -> Slices:
     """The slices of a position of a run."""
-    return slices(result, run.flank.z if not run.plane else np.zeros(1), run.scene.materials())
+    return slices(result, flank_facets(run.pair, run.shapes, run.scene.mesh.order), run.scene.materials())
 
 
 @pytest.mark.parametrize("file", SCENES)

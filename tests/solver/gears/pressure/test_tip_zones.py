@@ -11,7 +11,6 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.spacing import PLASTIC
 from evolvent.contact.hertz import line_peak_pressure
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import zone_end_peaks
 from evolvent.results.engagement import engagement, largest_peak
 from evolvent.results.run_data import RunData
@@ -22,7 +21,7 @@ from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.scene import load_scene
 from tests.support.gear_cases import QUIET
 from tests.support.run_parts import GOOD
-from tests.support.synthetic_run import synthetic_run
+from tests.support.synthetic_run import resolved_slices, synthetic_run
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +77,7 @@ def test_pressure_at_a_zone_limit_follows_the_load() -> None:
     radius = np.where(edge, 1.0, 1.1) * pair.relative_curvature_radius(ξ)
     hertz = np.asarray(line_peak_pressure(load, radius, 115e3))
     peak = np.where(edge, np.nan, 1.03 * hertz)
-    cut = Slices(np.zeros(len(ξ), dtype=int), 0.0 * ξ, ξ, ones, load, peak, peak, ones, hertz, radius, edge)
+    cut = resolved_slices(np.zeros(len(ξ), dtype=int), 0.0 * ξ, ξ, ones, load, peak, peak, ones, hertz, radius, edge)
     (found,) = zone_end_peaks(pair, cut, (-4.9, 5.0))
     exact = 1.03 * line_peak_pressure(695.0, 1.1 * pair.relative_curvature_radius(-4.9), 115e3)
     assert (found.roll_distance, found.at_zone_end) == (-4.9, True)

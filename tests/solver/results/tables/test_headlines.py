@@ -28,6 +28,17 @@ def test_figures_stand_with_their_error_bars_and_unknown_ones_are_left_out(tmp_p
     ]
 
 
+def test_pressure_over_the_start_of_a_relief_is_named_apart(tmp_path: Path) -> None:
+    """A relieved spur pair: both pressures with their names, the one over the ideal kink as about so much."""
+    figures = {"max_pressure_MPa": 1310.4, "kink_pressure_MPa": 1499.3, "loss_percent": 0.0}
+    row = {"friction": 0.0, **figures, "estimated_error": {"max_pressure_MPa": 67.2}}
+    (tmp_path / "summary.json").write_text(json.dumps({"frictions": [row]}), encoding="utf-8")
+    assert headlines(tmp_path / "summary.json") == [
+        "μ = 0: largest pressure away from relief starts 1310 ± 68 MPa, over the sharp start of a linear relief about "
+        "1499 MPa, loss 0.00 %"
+    ]
+
+
 @pytest.mark.parametrize(("factor", "said"), [(1.31, True), (1.201, True), (1.2, False), (1.0, False), (None, False)])
 def test_uneven_load_over_the_face_is_said(factor: float | None, said: bool, tmp_path: Path) -> None:
     """Above 1.2, which is 10 % more pressure than of an even load; not of a run of before the figure was there."""

@@ -11,7 +11,7 @@ from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.pressure.contact_slices import Slices, slices
 from evolvent.gears.pressure.line_peaks import line_peak
-from evolvent.gears.pressure.pitch_pressure import PitchPressure
+from evolvent.gears.pressure.pitch_pressure import PitchPressure, facets_of
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.error_bars.estimation import Curve
 from evolvent_meshes.arrays import Floats
@@ -44,8 +44,8 @@ class MotionCurves:
     def of(model: GearModel, results: Sequence[PositionResult], inner: tuple[float, float]) -> MotionCurves:
         """Cuts the contact of each position into slices."""
         pinion, wheel = model.bodies
-        materials = pinion.material, wheel.material
-        cuts = tuple(slices(result, pinion.z, materials) for result in results)
+        materials, flanks = (pinion.material, wheel.material), facets_of(model)
+        cuts = tuple(slices(result, flanks, materials) for result in results)
         return MotionCurves(model, tuple(results), cuts, inner)
 
     @property

@@ -28,7 +28,7 @@ def _of_check() -> list[Figure]:
 def _of_run() -> list[Figure]:
     names = [each.name for each in fields(FigureErrors)]
     own = [Figure(name, SUMMARY, name, "frictions", error=f"estimated_error.{name}") for name in names]
-    return [*own, Figure("balance_error", SUMMARY, "balance_error", "frictions")]
+    return [*own, *(Figure(name, SUMMARY, name, "frictions") for name in ("kink_pressure_MPa", "balance_error"))]
 
 
 def _of_excitation() -> list[Figure]:

@@ -22,7 +22,7 @@ MOST_PERCENTS = 30
 """Torques of such a list: as many as dynamics.torque_percents takes; each costs as much as a run of all positions."""
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
 """What typer raises for an option or argument that it cannot use. Typer has no public name for this class."""
-EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh"}
+EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh", "FILE.png": "teeth.png"}
 """What --out takes, as in the help -> an example."""
 
 
@@ -46,7 +46,8 @@ def _usage_problem(error: Any) -> InputProblem:
         help_text = (parameter.help or "a value").split(";")[0].rstrip(".")
         allowed = help_text[0].lower() + help_text[1:]
         name = _name(parameter)
-        give = f"write {name} {EXAMPLES[parameter.metavar]}" if name == "--out" else "give one"
+        example = EXAMPLES.get(parameter.metavar or "")
+        give = f"write {name} {example}" if name == "--out" and example else "give one"
         return InputProblem(name, text or NOTHING, allowed, f"{give}; {remedy}")
     if match := re.search(r"No such command [\"'](.*?)[\"']", text):
         names = list(context.command.commands) if context is not None else []

@@ -10,6 +10,7 @@ import contextlib
 import hashlib
 import io
 import os
+import re
 import shutil
 import signal
 import time
@@ -40,6 +41,8 @@ load.torque_Nm = [100.0, 200.0]
 RECORD = "sliding_distance_m,depth_um\n" + "".join(f"{100 * n},{n}\n" for n in range(1, 20))
 SEEDS = 10
 """Files of a command that are spoilt at random."""
+PROGRESS = re.compile(r" +[\d.]+ s  ")
+"""How a line begins that shows how far a command is."""
 SPOILABLE = {"SCENE.toml": SCENE, "STUDY.toml": STUDY}
 """Kind of a parameter that names a file which is read -> a sound one."""
 
@@ -174,7 +177,7 @@ def _verdict(status: int | None, message: str, wrote: bool) -> Verdict:
         return Verdict.STATUS
     if wrote:
         return Verdict.WROTE
-    lines = message.splitlines()
+    lines = [line for line in message.splitlines() if not PROGRESS.match(line)]
     clear = bool(lines) and all(line.startswith("evolvent: ") and "found " in line for line in lines)
     return Verdict.REFUSED if clear else Verdict.UNCLEAR
 

@@ -18,7 +18,7 @@ NO_FOLDER = ("", "no\0name", "n" * 5000, "scene.toml", "scene.toml/below", "pipe
 """Names of what is no folder that may be written, nor can be made."""
 NO_NUMBER = ("", "many", "0", "-1", "nan", "inf", "1e300", "0x10", "5 N", "1,5", "--", "٣٫٣")
 """Texts that are no force, diameter or the like."""
-NO_VALUE = ("1979-05-27", "{a = 1}", "nan", "-inf", "[[1]]", "[{}]", "'\\u0000'", "1" * 500, "0x1p3", "1_", "'a")
+NO_VALUE = ("1979-05-27", "{a = 1}", "nan", "-inf", "[[1]]", "[{}]", '"\\u0000"', "1" * 500, "0x1p3", "1_", "'a")
 """Values that no key of a scene and of a study takes."""
 WRONG: Mapping[str, tuple[str, ...]] = {
     "SCENE.toml": NO_FILE,
@@ -26,8 +26,8 @@ WRONG: Mapping[str, tuple[str, ...]] = {
     "RECORD.csv...": (*NO_FILE, "scene.toml"),
     "DIR": (*NO_FOLDER, "absent", "folder", "dangling"),
     "--out DIR": NO_FOLDER,
-    "--out FILE.png": ("", "teeth", "teeth.svg", "absent/teeth.png", "scene.toml/teeth.png", "no\0name.png"),
-    "--out FILE.msh": ("", "pair", "pair.stl", "absent/pair.msh", "scene.toml/pair.msh", "no\0name.msh"),
+    "--out FILE.png": ("", "teeth", "teeth.svg", "scene.toml/teeth.png", "no\0name.png"),
+    "--out FILE.msh": ("", "pair", "pair.stl", "scene.toml/pair.msh", "no\0name.msh"),
     "--level quick|standard|fine": ("", "Quick", "quick ", "ultra", "1", 'fine"', "[]", "\udcff"),
     "--set KEY=VALUE": ("", "=", "load.torque_Nm", "load.torque_Nm=", "=100", "load=100", "load.torque_Nm=1 2", "a.b.c=1",
                         "load..torque_Nm=1", "[load]=1", "load.torque_Nm=100\n[x]", "#=1", "\udcff=1"),

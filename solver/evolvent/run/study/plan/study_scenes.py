@@ -16,6 +16,7 @@ from evolvent.run.study.plan.shared_gears import gears_names, on_shared_meshes
 from evolvent.run.study.plan.study_file import Computation, StudyFile
 from evolvent.scene.scene import Scene, SceneError, scene_from_values
 from evolvent.scene.scene_text import apply_override, nested_values, scene_text
+from evolvent.scene.schema.errors import InputProblem, shown
 
 NAME = 16
 """Digits of a scene's name."""
@@ -44,22 +45,35 @@ def study_scenes(study: StudyFile, path: Path, overrides: Sequence[str], version
     """All scenes of a study, in the order of its parameters.
 
     path: of the study file. overrides: "section.key=value" for all scenes, as `--set` takes them. version: of the
-    program. Raises SceneError where the base scene cannot be read.
+    program. Raises SceneError where the base scene cannot be read, or the values of all scenes are refused.
     """
-    base, found = base_values(study, path, overrides), []
+    base, found, first = base_values(study, path, overrides), [], None
     for parameters in combinations(axes(study)):
-        values = deepcopy(base)
-        for name, value in parameters.items():
-            _put(values, name, value, path.parent)
         try:
-            scene = scene_from_values(values)
+            scene = scene_from_values(_with(base, parameters, path.parent))
         except SceneError as error:
             found.append(StudyScene(parameters, None, "; ".join(map(str, error.problems)), "", ""))
+            first = first or error
         else:
             found.append(StudyScene(parameters, scene, "", "", ""))
+    if first is not None and all(each.scene is None for each in found):
+        raise SceneError(first.problems, f"{path}: {_counted(len(found))}")
     if study.share_gears:
         found = _sharing(found, study.compute)
     return [replace(each, name=_name(each, study, version)) for each in found]
+
+
+def _counted(count: int) -> str:
+    """How many scenes are refused, which are all that there are."""
+    return "its scene" if count == 1 else f"all of its {count:,} scenes are refused, the first one for"
+
+
+def _with(base: Values, parameters: Mapping[str, Any], folder: Path) -> Values:
+    """The base scene's values with those of the parameters. Raises SceneError where a section has a value."""
+    values = deepcopy(base)
+    for name, value in parameters.items():
+        _put(values, name, value, folder)
+    return values
 
 
 def base_values(study: StudyFile, path: Path, overrides: Sequence[str]) -> Values:
@@ -79,10 +93,13 @@ def base_values(study: StudyFile, path: Path, overrides: Sequence[str]) -> Value
 
 
 def _put(values: Values, name: str, value: Any, folder: Path) -> None:
-    """Sets a dotted key. folder: to which the paths of flank charts are relative."""
+    """Sets a dotted key. folder: to which the paths of flank charts are relative. Raises SceneError where a section has
+    a value."""
     *sections, last = name.split(".")
     for section in sections:
         values = values.setdefault(section, {})
+        if not isinstance(values, dict):
+            raise SceneError([InputProblem(section, shown(values), "a section", f"write [{section}] above its keys")])
     values[last] = str(folder / value) if last == "flank_csv" and isinstance(value, str) else value
 
 

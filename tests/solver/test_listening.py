@@ -89,8 +89,9 @@ def test_ranks_on_one_machine_listen_on_no_network(folder: Path) -> None:
     """With README.md's variables neither rank listens beyond loopback. `mpirun` itself keeps one port open, of each
     version of IP, as the page says; a release of Open MPI that does not lets this test be made stricter."""
     ranks = ["mpirun", "-n", "2", sys.executable, "-m", "evolvent", *example("run"), "--overwrite"]
+    settings = variables(**MPI_AS_ROOT, **documented())
     with one_at_a_time(2):
-        found, said = watched(ranks, folder, variables(**MPI_AS_ROOT, **documented()), lambda pid: started_mpi(pid) == 2)
+        found, said = watched(ranks, folder, settings, lambda pid: started_mpi(pid) == 2)
     assert {name for name, _ in found} <= {"mpirun", "prterun"}, said
     assert len(found) <= 2
     assert {address.split(":")[0] for _, address in found} <= {8 * "0", 32 * "0"}
@@ -98,8 +99,8 @@ def test_ranks_on_one_machine_listen_on_no_network(folder: Path) -> None:
 
 @pytest.mark.mpi
 def test_mpirun_in_a_network_of_its_own(tmp_path: Path) -> None:
-    """README.md's way to have nothing reachable: `mpirun` and two ranks, of this user, see loopback alone, and reach each
-    other."""
+    """README.md's way to have nothing reachable: `mpirun` and two ranks, of this user, see loopback alone, and reach
+    each other."""
     (command,) = re.findall(r"`(unshare .*?)evolvent run \.\.\.'`", README, re.DOTALL)
     probe = "import os; from mpi4py import MPI; networks = open('/proc/net/dev').read().count(':')\n"
     probe += "print(MPI.COMM_WORLD.gather((os.getuid(), networks)) or '', end='')"
@@ -115,16 +116,18 @@ def test_mpirun_in_a_network_of_its_own(tmp_path: Path) -> None:
 
 
 def test_a_port_is_seen(tmp_path: Path) -> None:
-    """Of two ports the one on all interfaces is found, in a process that a process has started; that on loopback not."""
+    """Of two ports the one on all interfaces is found, in a process that a process has started, and not the one on
+    loopback."""
     program = "import socket, time\nopen_ = [socket.create_server((host, 0)) for host in ('', '127.0.0.1')]\n"
     program += "print(open_[0].getsockname()[1], flush=True)\ntime.sleep(1)"
-    found, said = watched(["sh", "-c", f'{sys.executable} -c "{program}"; true'], tmp_path, variables(), lambda _: False)
+    words = ["sh", "-c", f'{sys.executable} -c "{program}"; true']
+    found, said = watched(words, tmp_path, variables(), lambda _: False)
     ((_, address),) = found
     assert address == f"00000000:{int(said):04X}"
 
 
 def test_this_process_listens_nowhere() -> None:
-    """A program of one's own, here these tests, which have imported the solver: MPI has started, and no port is open."""
+    """A program of one's own, here these tests, which have imported the solver: MPI has started, no port is open."""
     from mpi4py import MPI
 
     assert MPI.Is_initialized() and "OMPI_MCA_btl" not in os.environ

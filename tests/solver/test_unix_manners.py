@@ -1,5 +1,5 @@
-"""The command line among other programs of Unix: its output's reader leaves, it is interrupted at once, its words are no
-UTF-8, its disk is full."""
+"""The command line among other programs of Unix: its output's reader leaves, it is interrupted at once, its words are
+no UTF-8, its disk is full."""
 
 from __future__ import annotations
 
@@ -8,33 +8,39 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from subprocess import PIPE
+from typing import IO
 
 import pytest
 
-from evolvent.cli import app, main
+from evolvent.cli import main
 from evolvent.failures import Exit, flushed
 from tests.support.checkout import PYTHONPATH, ROOT
 from tests.support.running.fresh_process import NOWHERE
 from tests.support.scene_texts import HE
 
 EVOLVENT = (sys.executable, "-m", "evolvent")
-COMMANDS = [str(each.name or each.callback.__name__) for each in app.registered_commands if each.callback is not None]
 
 
-def environment(**more: str) -> dict[str, str]:
-    """This checkout's, with some variables."""
-    return {**os.environ, "PYTHONPATH": PYTHONPATH, "OMP_NUM_THREADS": "1", **more}
+Done = subprocess.CompletedProcess[str]
 
 
-def unread(*words: str, errors: bool = False) -> subprocess.CompletedProcess[str]:
+def ran(
+    *words: str | bytes, stdout: int | IO[bytes] = PIPE, stderr: int | IO[bytes] = PIPE, **variables: str
+) -> Done:
+    """A program run in the checkout, with some variables."""
+    environment = {**os.environ, "PYTHONPATH": PYTHONPATH, "OMP_NUM_THREADS": "1", **variables}
+    return subprocess.run(
+        words, cwd=ROOT, env=environment, stdout=stdout, stderr=stderr, text=True, timeout=300, check=False
+    )
+
+
+def unread(*words: str, errors: bool = False) -> Done:
     """A command whose output nobody reads, from the first byte on; with `errors` its standard error neither."""
     reader, writer = os.pipe()
     os.close(reader)
     try:
-        return subprocess.run(
-            [*EVOLVENT, *words], cwd=ROOT, env=environment(), stdout=writer, stderr=writer if errors else subprocess.PIPE,
-            text=True, timeout=300, check=False,
-        )  # fmt: skip
+        return ran(*EVOLVENT, *words, stdout=writer, stderr=writer if errors else PIPE)
     finally:
         os.close(writer)
 
@@ -69,10 +75,7 @@ def test_run_that_nobody_reads(tmp_path: Path) -> None:
 def test_output_that_cannot_be_written() -> None:
     """A full disk behind the standard output: one line, status 1."""
     with open("/dev/full", "wb") as full:
-        done = subprocess.run(
-            [*EVOLVENT, "check", "demos/he2022.toml"], cwd=ROOT, env=environment(), stdout=full, stderr=subprocess.PIPE,
-            text=True, timeout=120, check=False,
-        )  # fmt: skip
+        done = ran(*EVOLVENT, "check", "demos/he2022.toml", stdout=full)
     assert (done.returncode, done.stderr) == (1, "evolvent: [Errno 28] No space left on device\n")
 
 
@@ -84,6 +87,7 @@ def test_status_of_printed_output(capfd: pytest.CaptureFixture[str]) -> None:
 
 SLOW_IMPORT = """
 import os, signal, sys
+{first}
 class Slow:
     def find_spec(self, name, path=None, target=None):
         if name == {at!r}:
@@ -98,20 +102,24 @@ sys.exit(main())
 """
 
 
+HEARD = "signal.signal(signal.SIGINT, signal.default_int_handler)"
+"""These tests may run where SIGINT is ignored."""
+
+
 @pytest.mark.parametrize("at", ["evolvent.cli", "typer", "numpy"])
-@pytest.mark.parametrize("command", COMMANDS)
-def test_interrupted_before_it_began(command: str, at: str) -> None:
-    """SIGINT while modules are imported, of which one turns every exception into another: one line, status 130."""
-    words = [sys.executable, "-c", SLOW_IMPORT.format(at=at), command, "demos/he2022.toml"]
-    done = subprocess.run(words, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=120, check=False)
+def test_interrupted_before_it_began(at: str) -> None:
+    """SIGINT while modules are imported, of which one turns every exception into another: one line, status 130. No
+    command has been looked at by then."""
+    program = SLOW_IMPORT.format(at=at, first=HEARD)
+    done = ran(sys.executable, "-c", program, "run", "demos/he2022.toml", "--out", NOWHERE)
     assert (done.returncode, done.stdout) == (130, "")
     assert done.stderr == "evolvent: stopped by SIGINT before it began\n"
 
 
 def test_interrupt_that_is_ignored_stays_so() -> None:
     """In the background of a script, or under nohup, SIGINT is ignored: the command is not stopped by it."""
-    words = ["sh", "-c", "trap '' INT; exec \"$@\"", "sh", sys.executable, "-c", SLOW_IMPORT.format(at="typer"), "--version"]
-    done = subprocess.run(words, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=120, check=False)
+    ignoring = ("sh", "-c", "trap '' INT; exec \"$@\"", "sh")
+    done = ran(*ignoring, sys.executable, "-c", SLOW_IMPORT.format(at="typer", first=""), "--version")
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -120,7 +128,7 @@ def test_the_installed_program_is_the_interruptible_one() -> None:
     assert 'evolvent = "evolvent.__main__:main"' in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
 
 
-LATIN = os.fsencode("gr") + b"\xf6\xdf" + b"e"
+LATIN = b"gr\xf6\xdfe"
 
 
 @pytest.mark.parametrize("command", ["check", "mesh", "info", "run"])
@@ -138,23 +146,19 @@ def test_names_that_are_no_utf8(command: str, tmp_path: Path) -> None:
         "info": [],
         "run": [scene, b"--out", os.path.join(folder, b"out"), b"--set=output.pictures=false", *cheap],
     }[command]
-    done = subprocess.run(
-        [*EVOLVENT, command.encode(), *words], cwd=ROOT, env=environment(), capture_output=True, timeout=300, check=False
-    )
+    done = ran(*EVOLVENT, command, *words)
     assert done.returncode == 0, done.stderr
-    assert b"Traceback" not in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_check_needs_no_mpi() -> None:
     """`check` in a process of its own starts no MPI, so that a temporary folder that cannot be written is none of its
     business; a command that computes says so in one line, with status 2."""
-    variables = environment(TMPDIR=NOWHERE)
     program = "import sys; from evolvent.cli import main; main(sys.argv[1:]); assert 'mpi4py.MPI' not in sys.modules"
-    for words in ([sys.executable, "-c", program, "check", "demos/he2022.toml"], [*EVOLVENT, "check", "demos/he2022.toml"]):
-        done = subprocess.run(words, cwd=ROOT, env=variables, capture_output=True, text=True, timeout=120, check=False)
+    for start in ((sys.executable, "-c", program), EVOLVENT):
+        done = ran(*start, "check", "demos/he2022.toml", TMPDIR=NOWHERE)
         assert (done.returncode, done.stderr) == (0, "")
-    words = [*EVOLVENT, "run", "demos/he2022.toml", "--out", NOWHERE]
-    done = subprocess.run(words, cwd=ROOT, env=variables, capture_output=True, text=True, timeout=120, check=False)
+    done = ran(*EVOLVENT, "run", "demos/he2022.toml", "--out", NOWHERE, TMPDIR=NOWHERE)
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
     assert done.stderr.startswith(f"evolvent: TMPDIR: found {NOWHERE}, where MPI cannot keep its files")
 

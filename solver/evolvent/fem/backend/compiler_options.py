@@ -17,13 +17,14 @@ PATIENCE = 60.0
 
 
 def refused_options() -> str:
-    """The options with which the compiler does not compile even the smallest program, its words on them, and what to do.
+    """The options with which the compiler does not compile even the smallest program, its words on them, and a remedy.
 
     Empty where no options are set, where it compiles it, and where there is no compiler.
     """
     given = {name: os.environ[name] for name in VARIABLES if os.environ.get(name)}
     compiler = shlex.split(os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc")
-    if not given or not (words := _complaint(compiler, [word for text in given.values() for word in shlex.split(text)])):
+    words = _complaint(compiler, [word for text in given.values() for word in shlex.split(text)]) if given else ""
+    if not words:
         return ""
     options = ", ".join(f"{name}={text!r}" for name, text in given.items())
     return f"{options}, with which the compiler ends ({words}); unset {' '.join(given)}, or correct the options"

@@ -1,5 +1,5 @@
-"""What dolfinx and FFCx would take from the user's environment, and must not: options files, words of the command line, a
-home directory.
+"""What dolfinx, FFCx and distutils would take from the user's environment, and must not: options files, words of the
+command line, a home directory.
 
 An options file in ~/.config or in the current folder belongs to other programs, and one that cannot be read, as in the
 home of another user, would end a run.
@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 READERS = ("dolfinx.jit", "ffcx.parameters", "ffcx.options")
 """Modules that read options files: those of FFCx until 2022, and since."""
+Reader = tuple[Any, str, Callable[..., Any]]
+"""A module or class, its function that reads files, and what takes its place."""
 FUNCTIONS = ("_load_parameters", "_load_options")
-"""Their functions that do so, each without arguments: (of the home directory, of the current folder)."""
+"""Their functions that do so: without arguments, options of the home directory and of the current folder."""
 
 
 @contextmanager
@@ -51,23 +52,19 @@ def _has_home() -> bool:
 def no_options_files() -> Iterator[None]:
     """Context in which forms are compiled with the options that are given, and no others. Afterwards the libraries read
     files again, for other programs in this process."""
-    readers = list(_readers())
-    originals = [getattr(module, name) for module, name in readers]
-    for module, name in readers:
-        setattr(module, name, _no_options)
+    readers = [*_option_readers(), (_distribution(), "find_config_files", lambda self: [])]
+    originals = [getattr(owner, name) for owner, name, _ in readers]
+    for owner, name, instead in readers:
+        setattr(owner, name, instead)
     try:
         yield
     finally:
-        for (module, name), original in zip(readers, originals):
-            setattr(module, name, original)
+        for (owner, name, _), original in zip(readers, originals):
+            setattr(owner, name, original)
 
 
-def _no_options() -> tuple[dict[str, Any], dict[str, Any]]:
-    return {}, {}
-
-
-def _readers() -> Iterator[tuple[ModuleType, str]]:
-    """Module and name of the functions that read options files, in the installed versions. Raises RuntimeError where a
+def _option_readers() -> Iterator[Reader]:
+    """The functions of dolfinx and FFCx that read options files, in the installed versions. Raises RuntimeError where a
     library has none."""
     for module in (import_module(name) for name in READERS if find_spec(name)):
         names = [name for name in FUNCTIONS if hasattr(module, name)]
@@ -76,4 +73,12 @@ def _readers() -> Iterator[tuple[ModuleType, str]]:
                 f"{module.__name__}: wanted one of {', '.join(FUNCTIONS)}, found none; "
                 "evolvent.fem.backend.foreign_settings has to be adapted to this version"
             )
-        yield module, names[0]
+        yield module, names[0], lambda: ({}, {})
+
+
+def _distribution() -> Any:
+    """The class by which libraries are compiled: it looks for setup.cfg in the current folder and for a file in the
+    home. Python has it until 3.11, setuptools since."""
+    if "distutils" not in sys.modules:
+        import_module("setuptools")
+    return import_module("distutils.dist").Distribution

@@ -1,8 +1,8 @@
 """How MPI starts: a process alone opens no port, and says in one line where MPI finds no temporary folder.
 
-Open MPI's defaults are those of a cluster: a process that no mpirun has launched starts a daemon, and both listen on all
-interfaces, though they have nobody to talk to. The settings here are Open MPI 4's and 5's, for processes alone; ranks
-have mpirun's. They hold while MPI starts: programs that this one starts, mpirun among them, do not inherit them.
+Open MPI's defaults are those of a cluster: a process that no mpirun has launched starts a daemon (Open MPI 4), and both
+listen on all interfaces, though they have nobody to talk to. The settings here are for processes alone; ranks have
+mpirun's. They hold while MPI starts: programs that this one starts, mpirun among them, do not inherit them.
 """
 
 from __future__ import annotations

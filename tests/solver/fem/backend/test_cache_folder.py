@@ -84,11 +84,11 @@ def compiled_forms(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize(
     ("place", "how"),
-    [("folder", "owner"), ("folder", "mode"), ("above", "owner"), ("above", "mode"), ("file", "owner"), ("file", "mode")],
-)  # fmt: skip
+    [(place, how) for place in ("folder", "above", "file") for how in ("owner", "mode")],
+)
 def test_planted_forms_are_not_loaded(place: str, how: str, compiled_forms: Path, tmp_path: Path) -> None:
-    """Libraries under the names of our forms in $XDG_CACHE_HOME, where another user owns or may write to the folder, one
-    above it, or a library: their code does not run, one line says why, and the result is right."""
+    """Libraries under the names of our forms in $XDG_CACHE_HOME, where another user owns or may write to the folder,
+    one above it, or a library: their code does not run, one line says why, and the result is right."""
     cache, marker = tmp_path / "cache", tmp_path / "marker"
     shutil.copytree(compiled_forms, cache)
     libraries = sorted(cache.rglob("*.so"))

@@ -106,7 +106,10 @@ def test_missing_compiler_is_named(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "options", "words"),
-    [("CFLAGS", "-O2 -nonsense=3", "unrecognized command-line option"), ("LDFLAGS", "-lnothing", "cannot find -lnothing")],
+    [
+        ("CFLAGS", "-O2 -nonsense=3", "unrecognized command-line option"),
+        ("LDFLAGS", "-lnothing", "cannot find -lnothing"),
+    ],
 )
 def test_options_that_the_compiler_refuses_are_named(name: str, options: str, words: str, tmp_path: Path) -> None:
     """There is a compiler, but not for these options: the variable, its value, the compiler's words, and no advice to

@@ -29,11 +29,12 @@ def test_settings_of_a_process_alone(btl: str, ports: bool) -> None:
 
 
 @pytest.mark.mpi
-def test_ranks_have_the_settings_of_mpirun(run_script: Run) -> None:
+def test_ranks_have_the_settings_of_mpirun(run_script: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two ranks reach each other: those of a process alone, which reaches nobody, are not theirs."""
-    program = "import evolvent; from mpi4py import MPI; print(MPI.COMM_WORLD.allreduce(1), evolvent.__name__)"
+    monkeypatch.delenv("OMPI_MCA_btl", raising=False)
+    program = "import evolvent; from mpi4py import MPI; print(MPI.COMM_WORLD.gather(evolvent.__name__) or '', end='')"
     done = run_script("-c", program, ranks=2)
-    assert done.stdout.splitlines() == ["2 evolvent"] * 2, done.stderr
+    assert done.stdout == "['evolvent', 'evolvent']", done.stderr
 
 
 def test_launchers_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,7 +55,7 @@ def test_temporary_folder_that_cannot_be_written(name: str) -> None:
     done = python("import evolvent; from mpi4py import MPI", **{**others, name: NOWHERE})
     assert done.returncode == 1
     last = done.stderr.splitlines()[-1]
-    assert last.startswith(f"evolvent_meshes.errors.InputError: {name}: found {NOWHERE}, where MPI cannot keep its files")
+    assert f"InputError: {name}: found {NOWHERE}, where MPI cannot keep its files" in last
     assert f"remedy: export {name}=/tmp" in last
     assert "ompi" not in done.stderr.lower()
 

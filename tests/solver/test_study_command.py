@@ -183,6 +183,15 @@ def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...]
     assert not out.exists()
 
 
+def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, run_script: Run) -> None:
+    """Refused; nothing is made where it leads."""
+    (tmp_path / "out").symlink_to(tmp_path / "nowhere")
+    study = written(tmp_path, TORQUES)
+    done = run_script("-c", CODE, "study", str(study), "--out", str(tmp_path / "out"), "--quiet")
+    assert done.returncode == 2 and "a link that leads nowhere" in done.stderr
+    assert not (tmp_path / "nowhere").exists()
+
+
 def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: Run) -> None:
     """--level as of the other commands."""
     study, out = written(tmp_path, TORQUES.replace("[100.0, 200.0, 300.0]", "[100.0]")), tmp_path / "out"

@@ -71,8 +71,7 @@ class Gathering:
         read = self._rows(figure.file, figure.rows)
         rows = [row for group in self._by_friction(figure).values() for row in group]
         if not read:
-            place = f"a list {figure.rows!r}" if figure.rows else "rows"
-            return f"{figure.file} is not there, or has no {place}"
+            return f"{figure.file} is not there, or has no {f'list {figure.rows!r}' if figure.rows else 'rows'}"
         if not rows:
             wanted = ", ".join(f"{name} = {value!r}" for name, value in figure.where.items())
             return f"no row of {figure.file} has {wanted}"

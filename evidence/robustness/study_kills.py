@@ -1,4 +1,4 @@
-"""`python -m evidence.robustness.study_kills [--kills 30] [--seed 0] [--out docs]`: a study and kills at random moments.
+"""`python -m evidence.robustness.study_kills [--kills 30] [--seed 0] [--out docs]`: kills of a study at random moments.
 
 Workers, those that start among them, and the study itself are killed; a study that was killed, or has ended, is begun
 again, until all kills are done; then it is let end. Writes OUT/studies/kills.csv, from which `make pages` makes rows of

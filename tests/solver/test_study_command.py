@@ -173,6 +173,7 @@ def test_commands_of_the_page(tmp_path: Path) -> None:
         (("--scheduler", "ucx://127.0.0.1:9"), "--scheduler: found 'ucx://127.0.0.1:9', which cannot be reached ("),
         (("--set", "load.torque_Nm"), "--set: found"),
     ],
+    ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
 )
 def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...], said: str) -> None:
     """Status 2, one line, nothing computed, and no folder left."""

@@ -50,9 +50,11 @@ load.torque_Nm = [100.0, 200.0, 300.0]
 pair.normal_pressure_angle_deg = [20.0, 19.5]
 """
 """Six scenes of Zhang's pair in plane strain, on two pairs of gears."""
-LONGEST, ORPHANS, PATIENCE = 15.0, 10.0, 1200.0
-"""Longest time until a kill; in which processes end with their study; in which a study ends [s]."""
-STUDY, COMPUTING, STARTING = "the study", "a worker", "a worker that starts"
+ORPHANS, PATIENCE = 10.0, 1200.0
+"""Time in which processes end with their study; in which a study ends [s]."""
+STUDY, COMPUTING, STARTING = "the study", "workers", "workers that start"
+LONGEST = {STUDY: 30.0, COMPUTING: 10.0, STARTING: 3.0}
+"""Longest time until a process of a kind is killed, from when it is there [s]."""
 
 
 @dataclass
@@ -73,8 +75,8 @@ class Outcome:
     """Studies that have ended by themselves."""
 
 
-def killed_at_random(folder: Path, kills: int, seed: int, longest: float = LONGEST) -> Outcome:
-    """Kills as many processes, each after a random time, below a folder."""
+def killed_at_random(folder: Path, kills: int, seed: int) -> Outcome:
+    """Kills as many processes, each a random time after it is there, below a folder."""
     random_, outcome, study = random.Random(seed), Outcome(), folder / "study.toml"
     study.write_text(SCENES.format(scene=ROOT / "demos/zhang2023.toml"), encoding="utf-8")
     subprocess.run(words(study, folder / "undisturbed", "--quiet"), cwd=ROOT, env=environment(), check=True)
@@ -82,41 +84,42 @@ def killed_at_random(folder: Path, kills: int, seed: int, longest: float = LONGE
     while outcome.hangs == 0 and (outcome.kills.total() < kills or not outcome.ends):
         out = folder / f"out_{outcome.ends}"
         with started(words(study, out, "--quiet", "--workers", "2")) as program:
-            while outcome.kills.total() < kills and _lives_for(program, random_.uniform(0.0, longest)):
-                if _kill(program, random_, outcome) == STUDY:
-                    break
-            else:
-                with suppress(subprocess.TimeoutExpired):
-                    program.communicate(timeout=PATIENCE)
+            while outcome.kills.total() < kills and program.poll() is None:
+                kind = random_.choice((STUDY, COMPUTING, STARTING))
+                _kill(program, kind, random_.uniform(0.0, LONGEST[kind]), outcome)
+            with suppress(subprocess.TimeoutExpired):
+                program.communicate(timeout=PATIENCE)
+            if program.returncode != -signal.SIGKILL:
                 outcome.hangs += program.poll() is None
                 outcome.differ += not (program.poll() == 0 and rows(out) == wanted)
                 outcome.ends += 1
     return outcome
 
 
-def _lives_for(program: subprocess.Popen[str], seconds: float) -> bool:
-    """Whether a program still runs after a time."""
+def _kill(program: subprocess.Popen[str], kind: str, seconds: float, outcome: Outcome) -> None:
+    """Waits for a process of a kind, then for a time, and kills it where study and process still run."""
+    begin = time.monotonic()
+    while not (there := _of(kind, program.pid)) and time.monotonic() - begin < PATIENCE and program.poll() is None:
+        time.sleep(0.02)
     with suppress(subprocess.TimeoutExpired):
         program.wait(seconds)
-    return program.poll() is None
-
-
-def _kill(program: subprocess.Popen[str], random_: random.Random, outcome: Outcome) -> str:
-    """Kills the study or one of its workers; returns what was killed, empty where there was none."""
-    workers = workers_of(program.pid)
-    starting = [worker for worker in workers if not has_started(worker)]
-    kind = random_.choice([STUDY, *([COMPUTING] if workers else []), *([STARTING] if starting else [])])
+    if not there or not runs(there[0]) or program.poll() is not None:
+        return
+    below = descendants(program.pid)
+    with suppress(ProcessLookupError):
+        os.kill(there[0], signal.SIGKILL)
+        outcome.kills[kind] += 1
+        print(f"{outcome.kills.total()}: {kind}, after {seconds:.2f} s", flush=True)
     if kind == STUDY:
-        below = descendants(program.pid)
-        program.kill()
         program.wait()
         _outlived(program.pid, below, outcome)
-    else:
-        with suppress(ProcessLookupError):
-            os.kill(random_.choice(starting if kind == STARTING else workers), signal.SIGKILL)
-    outcome.kills[kind] += 1
-    print(f"{outcome.kills.total()}: {kind}", flush=True)
-    return kind
+
+
+def _of(kind: str, study: int) -> list[int]:
+    """Processes of a kind."""
+    if kind == STUDY:
+        return [study]
+    return [each for each in workers_of(study) if has_started(each) == (kind == COMPUTING)]
 
 
 def _outlived(study: int, below: Sequence[int], outcome: Outcome) -> None:

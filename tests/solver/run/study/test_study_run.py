@@ -203,6 +203,17 @@ def test_a_figure_that_no_scene_has_is_said(tmp_path: Path, computed: list[str],
     assert {row["typo"] for row in table(tmp_path / "out")} == {"nan"}
 
 
+def test_a_table_that_was_cut_off_is_said(tmp_path: Path, computed: list[str], not_drawn: None) -> None:
+    """The table of a scene that is done was damaged: its cells are empty, and a sentence names the file for each figure
+    by default."""
+    run(tmp_path)
+    path = tmp_path / "out" / table(tmp_path / "out")[1]["folder"] / "check.json"
+    path.write_text(path.read_text()[:-20])
+    said = run(tmp_path)
+    assert len(said) == 5 and all("check.json is not there, or has no rows" in each for each in said)
+    assert f"no number in 1 of 3 scenes, in scenes/{path.parent.name}" in said[0]
+
+
 def test_pictures_of_others_stay(tmp_path: Path, computed: list[str]) -> None:
     """A picture of the user's beside those of the study is left alone; one in the place of the study's own, too, which
     is then not drawn, and said."""

@@ -66,6 +66,10 @@ class Gathering:
                     found[f"{figure.name}{ERROR}{behind}"] = _value(rows, figure.error, figure.statistic)
         return found
 
+    def has_rows(self, figure: Figure) -> bool:
+        """Whether the figure's table can be read."""
+        return bool(self._rows(figure.file, figure.rows))
+
     def why_missing(self, figure: Figure) -> str:
         """Why a figure has no value here, for a reader; empty where its cell is left empty by the computation."""
         read = self._rows(figure.file, figure.rows)

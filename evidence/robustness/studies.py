@@ -80,7 +80,7 @@ TABLE = Table(
 )  # fmt: skip
 
 
-def _yes(holds: bool) -> str:
+def yes(holds: bool) -> str:
     return "yes" if holds else "no"
 
 
@@ -94,10 +94,10 @@ def on_workers(folder: Path) -> Iterator[Measured]:
     ratio = seconds[1] / seconds[2]
     machine = f"{len(os.sched_getaffinity(0))} cores, load {os.getloadavg()[2]:.1f} in the last quarter of an hour"
     yield Measured(f"{SCENES} scenes on 1 worker [s]", seconds[1], machine, "")
-    yield Measured("the same on 2 workers: times as fast", ratio, "at least 1.8", _yes(ratio >= 1.8))
+    yield Measured("the same on 2 workers: times as fast", ratio, "at least 1.8", yes(ratio >= 1.8))
     yield busy(folder / "on_2", 2)
-    same = _table(folder / "on_1") == _table(folder / "on_2")
-    yield Measured("tables that differ", float(not same), "0", _yes(same))
+    same = rows(folder / "on_1") == rows(folder / "on_2")
+    yield Measured("tables that differ", float(not same), "0", yes(same))
 
 
 def busy(out: Path, workers: int) -> Measured:
@@ -111,7 +111,7 @@ def busy(out: Path, workers: int) -> Measured:
     share = sum(end - begin for begin, end in spans) / (workers * (max(ends) - min(begins)))
     wanted = "at least 0.9"
     return Measured(f"share of the time in which {workers} workers compute, {len(spans)} scenes", share, wanted,
-                    _yes(share >= 0.9))  # fmt: skip
+                    yes(share >= 0.9))  # fmt: skip
 
 
 def killed(folder: Path) -> Iterator[Measured]:
@@ -123,10 +123,10 @@ def killed(folder: Path) -> Iterator[Measured]:
             os.kill(program.pid, signal.SIGKILL)
     _computed(study, out, "--workers", "2")
     _computed(study, folder / "undisturbed", "--workers", "2")
-    same, times = _table(out) == _table(folder / "undisturbed"), times_written(out)
-    yield Measured(f"{FEW} scenes, killed {KILLS} times: tables that differ", float(not same), "0", _yes(same))
+    same, times = rows(out) == rows(folder / "undisturbed"), times_written(out)
+    yield Measured(f"{FEW} scenes, killed {KILLS} times: tables that differ", float(not same), "0", yes(same))
     twice = sum(count > 1 for count in times)
-    yield Measured("scenes that were computed twice", float(twice), "0", _yes(twice == 0 and len(times) == FEW))
+    yield Measured("scenes that were computed twice", float(twice), "0", yes(twice == 0 and len(times) == FEW))
 
 
 def on_a_cluster(folder: Path) -> Iterator[Measured]:
@@ -139,8 +139,8 @@ def on_a_cluster(folder: Path) -> Iterator[Measured]:
             until(lambda: len(records(out)) >= 3, say="three scenes")
             workers[0].kill()
             program.communicate(timeout=10.0 * PATIENCE)
-    same = _table(out) == _table(folder / "undisturbed")
-    yield Measured("a Dask cluster of 3 workers, one killed: tables that differ", float(not same), "0", _yes(same))
+    same = rows(out) == rows(folder / "undisturbed")
+    yield Measured("a Dask cluster of 3 workers, one killed: tables that differ", float(not same), "0", yes(same))
 
 
 def _study(folder: Path, samples: int) -> Path:
@@ -153,7 +153,7 @@ def _computed(study: Path, out: Path, *options: str) -> None:
     subprocess.run(words(study, out, "--quiet", *options), cwd=ROOT, env=environment(), check=True)
 
 
-def _table(out: Path) -> list[dict[str, str]]:
+def rows(out: Path) -> list[dict[str, str]]:
     """Rows of a study's table without the time of each scene."""
     with open(out / "study.csv", encoding="utf-8") as stream:
         return [{**row, "seconds": ""} for row in csv.DictReader(stream)]

@@ -44,6 +44,6 @@ def figures() -> str:
 
 
 def measured(docs: Path) -> str:
-    """What `python -m evidence.robustness.studies` and `study_map` have written."""
-    rows = [row for name in ("measured", "map") for row in TABLE.read(docs / "studies" / f"{name}.csv")]
+    """What `python -m evidence.robustness.studies`, `study_kills` and `study_map` have written."""
+    rows = [row for name in ("measured", "kills", "map") for row in TABLE.read(docs / "studies" / f"{name}.csv")]
     return TABLE.markdown(rows)

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from evidence.checkout import ROOT
@@ -37,15 +37,44 @@ def started(command: list[str]) -> Iterator[subprocess.Popen[str]]:
 
 def workers_of(parent: int) -> list[int]:
     """Process numbers of the worker processes below a study."""
-    found = []
+    return [each for each, above in _parents().items() if above == parent and WORKER in _words(each)]
+
+
+def has_started(worker: int) -> bool:
+    """Whether a worker process has imported what it computes with."""
+    try:
+        return "libdolfinx" in Path(f"/proc/{worker}/maps").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+
+
+def descendants(parent: int) -> list[int]:
+    """Process numbers of all processes below one, such as workers and what Open MPI has started for them."""
+    parents, found = _parents(), [parent]
+    for each in found:
+        found += [below for below, above in parents.items() if above == each]
+    return found[1:]
+
+
+def workers_for(study: int) -> list[int]:
+    """Process numbers of the workers that a study has started, whoever has taken them over."""
+    return [each for each in _parents() if WORKER in (given := _words(each)) and given[-1] == str(study)]
+
+
+def _parents() -> dict[int, int]:
+    """Process number -> that of its parent, of all processes."""
+    found = {}
     for path in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            own, words = int(path.parent.name), path.with_name("cmdline").read_text().split("\0")
-            if int(path.read_text().rpartition(")")[2].split()[1]) == parent and WORKER in words:
-                found.append(own)
-        except OSError:
-            continue
+        with suppress(OSError):
+            found[int(path.parent.name)] = int(path.read_text().rpartition(")")[2].split()[1])
     return found
+
+
+def _words(process: int) -> list[str]:
+    """Its command line; empty where it has ended."""
+    with suppress(OSError):
+        return Path(f"/proc/{process}/cmdline").read_text(errors="replace").split("\0")[:-1]
+    return []
 
 
 def runs(process: int) -> bool:

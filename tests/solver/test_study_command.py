@@ -173,6 +173,7 @@ def test_commands_of_the_page(tmp_path: Path) -> None:
         (("--scheduler", "ucx://127.0.0.1:9"), "--scheduler: found 'ucx://127.0.0.1:9', which cannot be reached ("),
         (("--set", "load.torque_Nm"), "--set: found"),
     ],
+    ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
 )
 def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...], said: str) -> None:
     """Status 2, one line, nothing computed, and no folder left."""
@@ -181,6 +182,15 @@ def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...]
     assert done.returncode == 2
     assert done.stderr.startswith("evolvent: ") and said in done.stderr and "Traceback" not in done.stderr
     assert not out.exists()
+
+
+def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, run_script: Run) -> None:
+    """Refused; nothing is made where it leads."""
+    (tmp_path / "out").symlink_to(tmp_path / "nowhere")
+    study = written(tmp_path, TORQUES)
+    done = run_script("-c", CODE, "study", str(study), "--out", str(tmp_path / "out"), "--quiet")
+    assert done.returncode == 2 and "a link that leads nowhere" in done.stderr
+    assert not (tmp_path / "nowhere").exists()
 
 
 def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: Run) -> None:

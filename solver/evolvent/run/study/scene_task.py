@@ -23,13 +23,15 @@ from evolvent.run.strength.strength_run import run_strength
 from evolvent.run.study.plan.shared_gears import condensed_problem, meshes, own_torque
 from evolvent.run.study.plan.study_file import Computation
 from evolvent.run.study.results.check_figures import run_check
-from evolvent.run.study.results.scene_record import SceneRecord, read_record, write_record
+from evolvent.run.study.results.scene_record import SceneRecord, Status, read_record, write_record
 from evolvent.scene.checking.problem_size import MEMORY_OF, memory_megabytes, require_memory
 from evolvent.scene.scene import Scene
 from evolvent.strength.results.tables import STRENGTH
 from evolvent_meshes.errors import EvolventError, InputError, ResultError
 
-DONE, FAILED, REFUSED = "done", "failed", "refused"
+DONE: Status = "done"
+FAILED: Status = "failed"
+REFUSED: Status = "refused"
 GLANCE = 1.0
 """Time between two looks at a folder that another process writes to [s]."""
 

@@ -70,12 +70,12 @@ class ScheduledWorkers:
 
         def more(count: int) -> None:
             for line, future in islice(submitted, count):
-                handed[future.key] = line
+                handed[str(future.key)] = line
                 waiting.add(future)
 
         more(MOST_WAITING)
         for done in waiting:
-            yield from _records(handed.pop(done.key), done)
+            yield from _records(handed.pop(str(done.key)), done)
             done.release()
             more(1)
 

@@ -97,7 +97,7 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
             progress.stage(OUTPUT)
             folder.remove(str(path.relative_to(out)) for path in out.glob(PICTURES))
             rows, columns = table.write(folder)
-            said = [*table.said(), *missing_figures(rows, _named(study), out)]
+            said = [*table.said(), *missing_figures(rows, study.figures, _named(study), out)]
             drawn = draw(study_pictures(_values(study, rows, columns)), folder)
         return [*said, *drawn.failures]
 
@@ -140,10 +140,9 @@ def _kept_names(path: Path) -> object:
     return None
 
 
-def _named(study: Study) -> list[Figure]:
-    """The figures that the study asks for by name: of those by default a scene may lack some."""
-    own = {each.name for each in study.file.figure}
-    return [each for each in study.figures if study.file.figures is not None or each.name in own]
+def _named(study: Study) -> set[str]:
+    """Names of the figures that the study asks for, unlike those by default."""
+    return {each.name for each in study.file.figure} | set(study.file.figures or ())
 
 
 def _values(study: Study, rows: Sequence[TableRow], columns: Sequence[str]) -> StudyValues:

@@ -142,6 +142,32 @@ def test_manifest_names_no_file_outside_its_folder(tmp_path: Path) -> None:
     assert (tmp_path / "mine").exists()
 
 
+@pytest.mark.parametrize(
+    "line",
+    ['{"path": "/etc/passwd", "sha256": "DIGEST"}', '{"path": "' + "x" * 5000 + '", "sha256": "a"}',
+     '{"path": "a\\u0000b", "sha256": "a"}', '{"path": 5, "sha256": []}', '{"path": "a", "sha256": []}', "[]", "5",
+     "[" * 100_000, '{"a":' * 100_000],
+)  # fmt: skip
+def test_forged_lines_of_the_manifest_are_skipped(line: str, folder: RunFolder) -> None:
+    """Absolute paths with the digest of their file, paths that no file can have, other types, nested without end."""
+    before = folder.written_files()
+    digest = hashlib.sha256(Path("/etc/passwd").read_bytes()).hexdigest()
+    with open(folder.out / MANIFEST, "a") as manifest:
+        manifest.write(f"\n{line.replace('DIGEST', digest)}\n")
+    assert folder.written_files() == before
+    folder.clear()
+    assert not (folder.out / "scene.toml").exists() and Path("/etc/passwd").exists()
+
+
+def test_a_manifest_that_is_a_link_is_not_written_to(tmp_path: Path) -> None:
+    """A link that leads nowhere, in place of the manifest: refused, and nothing is made where it leads."""
+    (tmp_path / "out/results").mkdir(parents=True)
+    (tmp_path / "out" / MANIFEST).symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(FolderError, match="found a link to"):
+        RunFolder(tmp_path / "out").write_text("scene.toml", "ours")
+    assert not (tmp_path / "elsewhere").exists() and not (tmp_path / "out/scene.toml").exists()
+
+
 def test_full_disk_leaves_the_manifest_as_it_was(folder: RunFolder, monkeypatch: pytest.MonkeyPatch) -> None:
     """No space for a file's line: WriteError; neither the line nor the file is written, and earlier lines stay."""
     before = (folder.out / MANIFEST).read_bytes()

@@ -90,7 +90,7 @@ def test_a_scene_that_kills_its_workers(
 
 
 def test_no_more_workers_than_scenes(tasks: list[SceneTask], monkeypatch: pytest.MonkeyPatch) -> None:
-    """A thousand workers for one scene: one process."""
+    """Three workers for one scene: one process."""
     started: list[_Worker] = []
 
     class Counted(_Worker):
@@ -99,7 +99,7 @@ def test_no_more_workers_than_scenes(tasks: list[SceneTask], monkeypatch: pytest
             started.append(self)
 
     monkeypatch.setattr(local_workers, "_Worker", Counted)
-    with closing(LocalWorkers(1000)) as many:
+    with closing(LocalWorkers(3)) as many:
         assert len(list(many.finished(own(tasks[:1])))) == 1
     assert len(started) == 1
 

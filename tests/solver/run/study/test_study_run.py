@@ -11,6 +11,7 @@ import pytest
 
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
+from evolvent.run.study import study_run
 from evolvent.run.study.results.scene_record import SceneRecord
 from evolvent.run.study.scene_task import SceneTask, solve
 from evolvent.run.study.study_run import NothingComputed, run_study
@@ -41,6 +42,12 @@ def computed() -> list[str]:
     """Names of the scenes that are computed, in this process."""
     HERE.names = []
     return HERE.names
+
+
+@pytest.fixture
+def not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No pictures, which take most of the time."""
+    monkeypatch.setattr(study_run, "study_pictures", lambda values: [])
 
 
 def run(folder: Path, text: str = TORQUES, overwrite: bool = False) -> list[str]:
@@ -177,3 +184,88 @@ def test_own_figures(tmp_path: Path, computed: list[str]) -> None:
     row = table(tmp_path / "out")[0]
     found = json.loads((tmp_path / "out" / row["folder"] / "check.json").read_text())
     assert float(row["backlash_um"]) == pytest.approx(found["normal_backlash_um"], rel=1e-8)
+
+
+@pytest.mark.parametrize("name", ["status", "reason", "folder", "seconds", "transmission_error_peak_to_peak_um_error"])
+def test_a_figure_does_not_replace_a_column(tmp_path: Path, name: str) -> None:
+    """A figure of one's own with the name of a column that the table has: refused, with the figure's number."""
+    own = f'[[figure]]\nname = "{name}"\nfile = "check.json"\ncolumn = "normal_backlash_um"\n'
+    with pytest.raises(ValueError, match=rf"figure\[0\]\.name: found '{name}', another column of the table"):
+        study_of(tmp_path, TORQUES.replace('"check"', '"excitation"') + own)
+
+
+def test_a_figure_that_no_scene_has_is_said(tmp_path: Path, computed: list[str], not_drawn: None) -> None:
+    """A column that does not exist: empty cells, and a sentence with the reason."""
+    own = '[[figure]]\nname = "typo"\nfile = "check.json"\ncolumn = "no_such_column"\n'
+    assert run(tmp_path, TORQUES + own) == [
+        "figure typo: no number in 3 of 3 scenes: check.json has no 'no_such_column'"
+    ]  # fmt: skip
+    assert {row["typo"] for row in table(tmp_path / "out")} == {"nan"}
+
+
+def test_a_table_that_was_cut_off_is_said(tmp_path: Path, computed: list[str], not_drawn: None) -> None:
+    """The table of a scene that is done was damaged: its cells are empty, and a sentence names the file for each figure
+    by default."""
+    run(tmp_path)
+    path = tmp_path / "out" / table(tmp_path / "out")[1]["folder"] / "check.json"
+    path.write_text(path.read_text()[:-20])
+    said = run(tmp_path)
+    assert len(said) == 5 and all("check.json is not there, or has no rows" in each for each in said)
+    assert f"no number in 1 of 3 scenes, in scenes/{path.parent.name}" in said[0]
+
+
+def test_pictures_of_others_stay(tmp_path: Path, computed: list[str]) -> None:
+    """A picture of the user's beside those of the study is left alone; one in the place of the study's own, too, which
+    is then not drawn, and said."""
+    folder = tmp_path / "out/pictures"
+    folder.mkdir(parents=True)
+    for name in ("mine.png", "curves.png"):
+        (folder / name).write_text("mine")
+    (said,) = run(tmp_path)
+    assert said.startswith("picture curves.png: not drawn")
+    assert [(folder / name).read_text() for name in ("mine.png", "curves.png")] == ["mine", "mine"]
+    assert (folder / "curves_MPa.png").stat().st_size > 1000
+
+
+def forged() -> list[bytes]:
+    """Contents that no study writes."""
+    values = {"name": "?", "compute": 5, "status": "done", "reason": {}, "warnings": "abc", "seconds": "x"}
+    return [b"", b"\0" * 50, bytes(range(256)), b"[]", b"5", b"null", b"NaN", b"[" * 100_000, b'{"a":' * 100_000,
+            b"1" * 5000, json.dumps(values).encode(), b'{"names": 5}']  # fmt: skip
+
+
+@pytest.mark.parametrize("content", forged())
+def test_forged_records_are_computed_again(
+    tmp_path: Path, computed: list[str], not_drawn: None, content: bytes
+) -> None:
+    """A record of a scene that a run seems to have written, but cannot be read: the scene is computed again, or has
+    failed with the file's name; the study ends, and its other scenes are done."""
+    run(tmp_path)
+    folder = tmp_path / "out" / table(tmp_path / "out")[0]["folder"]
+    RunFolder(folder).write("study_scene.json", content.replace(b"?", folder.name.encode()))
+    before = table(tmp_path / "out")
+    assert run(tmp_path) == [] and len(computed) == 4
+    assert [{**row, "seconds": ""} for row in table(tmp_path / "out")] == [{**row, "seconds": ""} for row in before]
+
+
+@pytest.mark.parametrize("content", forged())
+def test_a_forged_note_of_the_table_is_another_study(
+    tmp_path: Path, computed: list[str], not_drawn: None, content: bytes
+) -> None:
+    """study.json that cannot be read: refused with its name, and replaced by --overwrite."""
+    run(tmp_path)
+    RunFolder(tmp_path / "out").write("study.json", content)
+    with pytest.raises(FolderError, match=r"another study, or of other values \(study\.json\)"):
+        run(tmp_path)
+    assert run(tmp_path, overwrite=True) == []
+
+
+def test_a_directory_in_place_of_a_record(tmp_path: Path, computed: list[str], not_drawn: None) -> None:
+    """The scene has failed with the path; the others are done."""
+    run(tmp_path)
+    row = table(tmp_path / "out")[0]
+    record = tmp_path / "out" / row["folder"] / "study_scene.json"
+    record.unlink()
+    record.mkdir()
+    with pytest.raises(FolderError, match=r"study_scene\.json"):
+        run(tmp_path)

@@ -67,13 +67,16 @@ class Gathering:
                     found[f"{figure.name}{ERROR}{behind}"] = _value(rows, figure.error, figure.statistic)
         return found
 
+    def has_rows(self, figure: Figure) -> bool:
+        """Whether the figure's table can be read."""
+        return bool(self._rows(figure.file, figure.rows))
+
     def why_missing(self, figure: Figure) -> str:
         """Why a figure has no value here, for a reader; empty where its cell is left empty by the computation."""
         read = self._rows(figure.file, figure.rows)
         rows = [row for group in self._by_friction(figure).values() for row in group]
         if not read:
-            place = f"a list {figure.rows!r}" if figure.rows else "rows"
-            return f"{figure.file} is not there, or has no {place}"
+            return f"{figure.file} is not there, or has no {f'list {figure.rows!r}' if figure.rows else 'rows'}"
         if not rows:
             wanted = ", ".join(f"{name} = {value!r}" for name, value in figure.where.items())
             return f"no row of {figure.file} has {wanted}"

@@ -15,6 +15,7 @@ from evolvent_meshes.text_files import UnreadableText, read_text
 RECORD = "study_scene.json"
 SCENES = "scenes"
 """Folder of the scenes' folders, below that of the study."""
+Status = Literal["done", "failed", "refused"]
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class SceneRecord:
     """Of its content, and of its folder."""
     compute: str
     """What was computed."""
-    status: Literal["done", "failed", "refused"]
+    status: Status
     """done, failed (the computation ended with an error), or refused (its values are no scene)."""
     reason: str
     """Why it failed or was refused; empty where it is done."""

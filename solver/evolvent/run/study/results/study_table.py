@@ -6,7 +6,7 @@ import importlib.util
 import io
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -71,14 +71,22 @@ def figure_columns(rows: Sequence[TableRow], figures: Sequence[Figure]) -> list[
     return list(found) or [figure.name for figure in figures]
 
 
-def missing_figures(rows: Sequence[TableRow], figures: Sequence[Figure], out: Path) -> list[str]:
-    """A sentence on each figure that some scenes that are done do not have, with the reason in the first of them."""
+def missing_figures(rows: Sequence[TableRow], figures: Sequence[Figure], named: Container[str], out: Path) -> list[str]:
+    """A sentence on each figure that some scenes that are done do not have, with the reason in the first of them.
+
+    named: names of the figures that the study asks for; of others only a file that is not there, or cannot be read, is
+    said, for some computations leave them out.
+    """
     found, done = [], [row for row in rows if row.status == DONE]
     for figure in figures:
         without = [row for row in done if all(map(math.isnan, _values(row, figure.name)))]
-        reason = Gathering(out / without[0].folder).why_missing(figure) if without else ""
+        if not without:
+            continue
+        scene = Gathering(out / without[0].folder)
+        reason = scene.why_missing(figure) if figure.name in named or not scene.has_rows(figure) else ""
         if reason:
-            found.append(f"figure {figure.name}: no number in {len(without)} of {len(done)} scenes: {reason}")
+            count = f"{len(without)} of {len(done)} scenes"
+            found.append(f"figure {figure.name}: no number in {count}, in {without[0].folder} for instance: {reason}")
     return found
 
 

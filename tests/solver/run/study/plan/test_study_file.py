@@ -51,6 +51,9 @@ def test_count_of_scenes(tmp_path: Path) -> None:
          "leave_out.pinion.tip_mm", "allowed: a key of [pinion]"),
         (f'{TORQUES}[[figure]]\nname = "a b"\nfile = "a.csv"\ncolumn = "c"\n', "figure[0].name", "letters, digits"),
         (f'{TORQUES}[[figure]]\nname = "a"\nfile = "a.txt"\ncolumn = "c"\n', "figure[0].file", "CSV or JSON"),
+        (f'{TORQUES}[[figure]]\nname = "a"\nfile = "../a.csv"\ncolumn = "c"\n', "figure[0].file", "in it"),
+        (f'{TORQUES}[[figure]]\nname = "a"\nfile = "/a.csv"\ncolumn = "c"\n', "figure[0].file", "in it"),
+        (f'{TORQUES}[[figure]]\nname = "a"\nfile = "b/../a.json"\ncolumn = "c"\n', "figure[0].file", "CSV or JSON"),
         (f"{TORQUES}[[figure]]\nnam = 1\n", "figure[0].nam", "docs/studies.md"),
     ],
 )  # fmt: skip

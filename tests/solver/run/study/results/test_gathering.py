@@ -64,6 +64,54 @@ def test_what_is_not_there_is_not_a_number(scene: Gathering, tmp_path: Path) -> 
     assert scene.columns([Figure("dofs", "summary.json", "dofs")]) == {"dofs": 7.0}
 
 
+@pytest.mark.parametrize(
+    ("figure", "why"),
+    [
+        (Figure("a", "none.csv", "x"), "none.csv is not there, or has no rows"),
+        (Figure("a", "summary.json", "x", rows="friction"), "summary.json is not there, or has no list 'friction'"),
+        (Figure("a", "table.csv", "valu"), "table.csv has no 'valu'"),
+        (
+            Figure("a", "summary.json", "estimated_error.peek", "frictions"),
+            "summary.json has no 'estimated_error.peek'",
+        ),
+        (Figure("a", "table.csv", "value", where={"gear": "none"}), "no row of table.csv has gear = 'none'"),
+        (Figure("a", "table.csv", "value", where={"gear": "pinion"}), "table.csv has several rows of it: name one by"),
+        (Figure("a", "table.csv", "value", where={"gear": "wheel", "method": "b"}), ""),
+        (Figure("a", "summary.json", "dofs"), ""),
+    ],
+)
+def test_why_a_figure_is_missing(scene: Gathering, figure: Figure, why: str) -> None:
+    """A reason where the study asks for what is not there; none where the computation leaves a cell empty."""
+    found = scene.why_missing(figure)
+    assert found.startswith(why) and bool(found) == bool(why)
+
+
+def test_a_link_out_of_the_folder_is_not_followed(tmp_path: Path) -> None:
+    """A file of the scene's folder that is a link to another one elsewhere has no figures."""
+    folder = tmp_path / "scene"
+    folder.mkdir()
+    (tmp_path / "secret.json").write_text('{"a": 1}')
+    (folder / "own.json").symlink_to(tmp_path / "secret.json")
+    assert math.isnan(Gathering(folder).columns([Figure("a", "own.json", "a")])["a"])
+
+
+@pytest.mark.parametrize("statistic", ["only", "max", "mean", "peak_to_peak"])
+@pytest.mark.parametrize(
+    "content",
+    [
+        "5", "null", "[1]", '"a"', "[" * 100_000, '{"a":' * 100_000, '{"rows": 5}', '{"rows": {"a": 1}}',
+        '{"rows": [{"a": 1e999}, {"a": -1e999}]}', '{"rows": [{"a": 1%s}]}' % ("0" * 400), '{"rows": [{"a": [1]}]}',
+        '{"rows": [NaN, {"a": NaN}]}', "a\n" + "1" * 200_000, "\0",
+    ],
+)  # fmt: skip
+def test_forged_tables_have_no_figures(tmp_path: Path, content: str, statistic: str) -> None:
+    """What is no table, or no finite number, is NaN, as JSON and as CSV; nothing else is raised."""
+    for name in ("forged.json", "forged.csv"):
+        (tmp_path / name).write_text(content)
+        figures = [Figure("a", name, "b" if name.endswith("csv") else "a", "rows", statistic=statistic)]
+        assert math.isnan(Gathering(tmp_path).columns(figures)["a"])
+
+
 def test_defaults_are_in_the_catalogue() -> None:
     """Each computation gathers figures that have a name, each name once."""
     for compute in COMPUTATIONS:

@@ -17,10 +17,13 @@ from evolvent.fem.surface_stress import principal_stresses, surface_stress
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.root_meshes import root_nodes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
-from evolvent.gears.sweep.position_result import PositionResult, nodal_forces
+from evolvent.gears.sweep.position_result import NodalForces, PositionResult, nodal_forces
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.strength.root_surface import RootSurface, compression_side, tension_side
 from evolvent_meshes.arrays import Floats
+
+Moved = dict[int, Floats]
+"""Tooth -> displacements (n, k, d) of its observed nodes [mm]."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,10 @@ class RootPeak:
     """Mean of the largest and the smallest stress over the passage, there and in the direction of this one [MPa]."""
     amplitude: float
     """Half of their difference [MPa]."""
+    load_share: float
+    """Of the normal force at that rotation, the part on this tooth."""
+    whole_load: float
+    """Largest, or smallest, principal stress at that rotation with the whole load on this tooth [MPa]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +60,11 @@ class RootPassage:
     """(k,) pinion rotation of the tooth [rad]."""
     stress: Floats
     """(k, n, 3, 3) in the sector's frame [MPa]."""
+    load_share: Floats
+    """(k,) of the normal force, the part on this tooth."""
+    whole_load: Floats
+    """(k,) largest principal stress on the loaded side, smallest on the back, under the forces on this tooth alone,
+    over the share, so that they are the whole load [MPa]; NaN where there are none."""
 
     @cached_property
     def principal(self) -> Floats:
@@ -97,7 +109,10 @@ class RootPassage:
         """With the rotations of another passage of the same root."""
         angles = np.concatenate([self.angles, other.angles])
         order = np.argsort(angles)
-        return RootPassage(self.root, angles[order], np.concatenate([self.stress, other.stress])[order])
+        stress = np.concatenate([self.stress, other.stress])
+        share = np.concatenate([self.load_share, other.load_share])
+        whole = np.concatenate([self.whole_load, other.whole_load])
+        return RootPassage(self.root, angles[order], stress[order], share[order], whole[order])
 
     def _peak(self, place: int, number: int) -> RootPeak:
         """place: of the (k, n) stresses. number: of the principal stress there."""
@@ -107,6 +122,7 @@ class RootPassage:
         return RootPeak(
             float(course[k]), float(self.angles[k]), float(self.root.radii[j]), float(self.root.heights[j]),
             float(self.root.tangent_angles[j]), 0.5 * float(course.max() + course.min()), 0.5 * float(np.ptp(course)),
+            float(self.load_share[k]), float(self.whole_load[k]),
         )  # fmt: skip
 
 
@@ -131,14 +147,30 @@ def root_passages(body: GearBody, results: Sequence[PositionResult]) -> GearRoot
     """
     loads, pitch = nodal_forces(results, body.member), 2.0 * np.pi / results[0].stand.pair.pinion.z
     assert isinstance(body.chain, ChainedCompliance | TwoLevelRing)
-    moved = body.chain.observed_displacements(loads.rows, loads.forces)
-    stands = np.array([each.stand.angle for each in results])
-    angles = np.concatenate([stands + body.member.sign * i * pitch for i in moved])
-    order, u = np.argsort(angles), np.concatenate(list(moved.values()))
+    moved, alone = _displacements(body.chain, loads)
+    pairs = [body.member.sign * i for i in moved]
+    angles = np.concatenate([[each.stand.angle + i * pitch for each in results] for i in pairs])
+    share = np.concatenate([[each.load_share(i) for each in results] for i in pairs])
+    order = np.argsort(angles)
+    u, own = (np.concatenate(list(each.values()))[order] for each in (moved, alone))
     every = root_nodes(body.mesh)
 
-    def passage(root: RootSurface) -> RootPassage:
-        own = u[order][:, np.searchsorted(every, root.surface.nodes)]
-        return RootPassage(root, angles[order], surface_stress(root.surface, body.material, own))
+    def passage(root: RootSurface, number: int) -> RootPassage:
+        places = np.searchsorted(every, root.surface.nodes)
+        stress, own_stress = (surface_stress(root.surface, body.material, each[:, places]) for each in (u, own))
+        extreme = np.max if number == 2 else np.min
+        under_own = extreme(principal_stresses(own_stress)[:, root.is_fillet, number], axis=1)
+        whole = np.divide(under_own, share[order], out=np.full(len(order), np.nan), where=share[order] > 0.0)
+        return RootPassage(root, angles[order], stress, share[order], whole)
 
-    return GearRoots(passage(tension_side(body.mesh, body.gear)), passage(compression_side(body.mesh, body.gear)))
+    return GearRoots(passage(tension_side(body.mesh, body.gear), 2), passage(compression_side(body.mesh, body.gear), 0))
+
+
+def _displacements(chain: ChainedCompliance | TwoLevelRing, loads: NodalForces) -> tuple[Moved, Moved]:
+    """Of each tooth's observed nodes under the forces on all teeth, and under those on this tooth alone."""
+    teeth = np.unique(loads.rows[:, 0]).tolist()
+    own = [np.where((loads.rows[:, 0] == tooth)[:, None], loads.forces, 0.0) for tooth in teeth]
+    parts = chain.observed_displacements(loads.rows, np.concatenate([loads.forces, *own]))  # one factorisation for all
+    split = {tooth: np.split(u, len(teeth) + 1) for tooth, u in parts.items()}
+    alone = {i: u[1 + teeth.index(i)] if i in teeth else np.zeros_like(u[0]) for i, u in split.items()}
+    return {tooth: u[0] for tooth, u in split.items()}, alone

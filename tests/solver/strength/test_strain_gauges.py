@@ -40,7 +40,7 @@ def roots(own: RootSurface, values: Floats) -> GearRoots:
     t = np.zeros((len(n), 3))
     t[:, :2] = np.column_stack([-n[:, 1], n[:, 0]]) / np.linalg.norm(n, axis=1)[:, None]
     stress = values[:, :, None, None] * t[:, :, None] * t[:, None, :]
-    passage = RootPassage(own, np.arange(len(values)) * 0.1, stress)
+    passage = RootPassage(own, np.arange(len(values)) * 0.1, stress, *np.ones((2, len(values))))
     return GearRoots(passage, passage)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -66,6 +67,12 @@ class PositionResult:
     def transmission_error(self) -> float:
         """r_b1 φ_1 − r_b2 φ_2 [mm]."""
         return self.stand.transmission_error
+
+    def load_share(self, pair: int) -> float:
+        """Part of the normal force that a tooth pair bears; NaN where none does."""
+        forces = self.contact.pressure * self.contact.weights
+        total = float(forces.sum())
+        return float(forces[self.contact.tooth == pair].sum()) / total if total else math.nan
 
     @property
     def friction_loss(self) -> float:

@@ -14,7 +14,8 @@ Row = Mapping[str, str]
 
 
 def summary_lines(folder: Path) -> Iterator[str]:
-    """Stresses by the standard and by finite elements, of the latter with their error bars, from the folder's table."""
+    """Stresses by the standard and by finite elements, of the latter with their error bars and, with the load at the
+    outer point of single or double contact, with the share of the tooth and with all of it, from the folder's table."""
     with open(folder / STRENGTH, encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     for member in Member:
@@ -34,3 +35,7 @@ def _of_elements(rows: Iterable[Row]) -> Iterator[str]:
             stress, error = float(row["stress_MPa"]), float(row["stress_MPa_error"])
             bar = "" if math.isnan(error) else f" ± {error:.0f}"
             yield f"{row['method']} {stress:.0f}{bar} MPa (μ = {float(row['friction']):g})"
+        elif row["method"].startswith(f"{TENSION}, "):
+            share, whole = 100.0 * float(row["load_share"]), float(row["whole_load_MPa"])
+            point, stress = row["method"].removeprefix(f"{TENSION}, "), float(row["stress_MPa"])
+            yield f"at the {point} {stress:.0f} MPa under {share:.0f} % of the load, {whole:.0f} MPa under all of it"

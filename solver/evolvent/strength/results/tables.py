@@ -69,7 +69,12 @@ class StrengthRow:
     tangent_angle_deg: float
     """Of the profile there to the tooth's centre line in the transverse section; of formulas 30, in the normal one."""
     load_share: float
-    """Part of the load on the tooth that a formula takes; NaN for finite elements."""
+    """Part of the load on the tooth: that a formula takes, of finite elements that of the normal force at this rotation.
+    Deflected teeth share the load where rigid ones do not, at the outer point of single contact above all."""
+    whole_load_MPa: float
+    """The stress at this rotation with the whole load on this tooth, as the standard's stress has it: of formulas
+    stress_MPa / load_share; of finite elements under the forces on this tooth alone, over load_share. The forces on its
+    neighbours, which stress_MPa has too, may pull the root a little."""
     form_factor: float
     """Y_F, in the edition of 2019 with f_ε; NaN for finite elements."""
     stress_correction_factor: float
@@ -145,7 +150,7 @@ def _of_point(
     above = math.hypot(section.height, 0.5 * section.chord) - 0.5 * section.gear.reference_diameter
     return StrengthRow(
         load.member.label, method, UNKNOWN, point.stress, UNKNOWN, math.degrees(load.tooth_rotation(point.below_tip)),
-        0.5 * gear.reference_diameter + above, 0.0, 30.0, point.share,
+        0.5 * gear.reference_diameter + above, 0.0, 30.0, point.share, point.stress / point.share,
         form.form_factor if form_factor is None else form_factor, form.stress_correction_factor, form.notch_parameter,
         others, UNKNOWN, UNKNOWN,
     )  # fmt: skip
@@ -154,7 +159,8 @@ def _of_point(
 def _of_peak(load: RootLoad, method: str, friction: float, peak: RootPeak, error: float) -> StrengthRow:
     return StrengthRow(
         load.member.label, method, friction, peak.stress, error, math.degrees(peak.angle), peak.radius, peak.height,
-        math.degrees(peak.tangent_angle), UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, peak.mean, peak.amplitude,
+        math.degrees(peak.tangent_angle), peak.load_share, peak.whole_load, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN,
+        peak.mean, peak.amplitude,
     )  # fmt: skip
 
 

@@ -65,6 +65,10 @@ def test_all_ways_stand_side_by_side(out: Path, gear: str, paper: float, b: floa
     methods = "equal shares", "finite elements, tension"
     at_b = [own[f"{method}, outer point of double contact (b)"] for method in methods]
     assert float(at_b[1]["stress_MPa"]) < float(tension["stress_MPa"])
+    for row in own.values():  # formulas and finite elements alike: the part of the load, and the stress with all of it
+        assert 0.0 < float(row["load_share"]) <= 1.0
+        whole = float(row["stress_MPa"]) / float(row["load_share"])
+        assert float(row["whole_load_MPa"]) == pytest.approx(whole, rel=0.1 if "finite" in row["method"] else 1e-8)
     assert float(at_b[1]["tooth_rotation_deg"]) == pytest.approx(float(at_b[0]["tooth_rotation_deg"]), abs=1e-7)
 
 

@@ -23,7 +23,7 @@ def roots(tension: Floats, pressure: Floats) -> GearRoots:
     def passage(values: Floats) -> RootPassage:
         stress = np.zeros((len(values), 2, 3, 3))
         stress[:, :, 0, 0] = values[:, None] * [1.0, 0.5]
-        return RootPassage(root, ANGLES[: len(values)], stress)
+        return RootPassage(root, ANGLES[: len(values)], stress, *np.ones((2, len(values))))
 
     return GearRoots(passage(tension), passage(pressure))
 

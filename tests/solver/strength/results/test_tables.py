@@ -40,6 +40,7 @@ def test_stress_is_the_product_of_its_columns(helix_angle: float, member: Member
     for row in rows:
         factors = row.form_factor * row.stress_correction_factor * row.other_factors
         assert row.stress_MPa == pytest.approx(row.load_share * factors * nominal, rel=1e-12)
+        assert row.whole_load_MPa == pytest.approx(factors * nominal, rel=1e-12)
         assert 0.5 * gear.root_diameter < row.radius_mm < 0.5 * gear.tip_diameter
         assert 1.0 < row.notch_parameter < 8.0
 

@@ -93,7 +93,7 @@ RECORDS: dict[str, tuple[bytes, str, str]] = {
     "one line": ((RECORD_HEADER + "1000,1\n").encode(), "1", "at least 5 lines"),
     "time for distance": (RECORD.replace("sliding_distance_m", "time_s").encode(), "time_s", "sliding_distance_mm or"),
     "falling distance": ("\n".join([RECORD_HEADER.strip(), *RECORD.splitlines()[:0:-1]]).encode(), "8e+06", "sort the"),
-    "same distance": ((RECORD_HEADER + "1000,1\n" * 8).encode(), "1e+06 mm and then 1e+06", "sort the lines"),
+    "same distance": ((RECORD_HEADER + "1000,1\n" * 8).encode(), "1000 m and then 1000 m", "sort the lines"),
     "no wear": ((RECORD_HEADER + "".join(f"{k},1\n" for k in range(8))).encode(), "0", "is the record's depth rising"),
     "depth called mm": ((RECORD_HEADER.replace("_um", "_mm") + "".join(f"{k},{k}\n" for k in range(9))).encode(),
                         "5.65e-05", "is the record's depth rising"),

@@ -31,7 +31,7 @@ UNITS: dict[str, tuple[str, float]] = {
 """Unit -> quantity, and its value in one of that quantity's units."""
 ENDING = re.compile(rf"_({'|'.join(sorted(UNITS, key=len, reverse=True))})$", re.IGNORECASE)
 SPELLED = {unit.lower(): unit for unit in reversed(UNITS)}
-WORDS = {1e9: "divide by 1e9", 180.0 / math.pi: "multiply by 180/π", 30.0 / math.pi: "multiply by 30/π"}
+WORDS = {1e-9: "divide by 1e9", 180.0 / math.pi: "multiply by 180/π", 30.0 / math.pi: "multiply by 30/π"}
 
 
 def unit_of(key: str) -> str:

@@ -40,7 +40,7 @@ NOT_PARSED: dict[str, tuple[str, list[str], str, str, str]] = {
         YANG.replace("250", "250 Nm"), [], "scene file", "torque_Nm = 250 Nm", "no unit after a number",
     ),
     "escape sequence": (YANG.replace("250", "250\x1b[31m"), [], "scene file", "= 250?[31m", "mend that line"),
-    "line of a megabyte": (YANG + "x = 1" + "a" * 900_000, [], "scene file", "aaa...", "mend that line"),
+    "line of a megabyte": (YANG + "x = 1" + "a" * 900_000, [], "scene file", "aaa...", "no unit"),
     "no end of a text": (YANG + 'x = "a', [], "scene file", "no TOML", "mend that line"),
     "JSON": ('{"pair": {"normal_module_mm": 3}}', [], "scene file", "no TOML", "mend that line"),
     "unknown names of a megabyte": ("a" * 900_000 + " = 1\n" + YANG, [], "a" * 57 + "...", "unknown key", "delete it"),

@@ -13,6 +13,7 @@ MINUS = "−–—﹣－"
 """Characters that look like a minus sign."""
 QUOTES = "“”„‟«»‘’‚`´"
 """Characters that look like quotation marks."""
+CONTROL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f]")
 QUOTED = re.compile(r"\"(?:\\.|[^\"\\])*\"|'[^']*'")
 
 
@@ -77,8 +78,8 @@ def written_otherwise(line: str) -> WrittenOtherwise | None:
 
 
 def value_written_otherwise(value: str) -> WrittenOtherwise | None:
-    """The same of a value alone; None, too, where it is TOML."""
-    if _is_toml(value):
+    """The same of a value alone; None, too, where it is TOML or has control characters."""
+    if _is_toml(value) or CONTROL.search(value):
         return None
     plain = QUOTED.sub('""', value).partition("#")[0]
     for habit in HABITS:

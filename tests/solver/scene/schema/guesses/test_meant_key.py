@@ -56,8 +56,8 @@ def test_each_word_of_the_tables_names_its_keys(term: Term) -> None:
                 continue  # the word means something else in this section
             remedy = problem(key).remedy
             wanted = expected(term, key.partition(".")[0])
-            section = key.rpartition(".")[0]
-            if same := [each for each in KEYS if each.startswith(f"{section}.") and stem_of(each) == key.rpartition(".")[2]]:
+            section, _, name = key.rpartition(".")
+            if same := [each for each in KEYS if each.startswith(f"{section}.") and stem_of(each) == name]:
                 assert remedy.startswith(f"did you mean {same[0]}?"), (key, remedy)  # the unit alone is missing
                 continue
             assert not wanted or remedy.startswith(f"did you mean {' or '.join(wanted)}"), (key, remedy)
@@ -163,3 +163,5 @@ def test_keys_that_are_spelled_alike_are_told_apart() -> None:
     assert "did you mean pinion.face_width_mm?" in problem("pinion.facewidth").remedy
     assert "did you mean fatigue.yield_stress_MPa" in problem("material.yield_stress_MPa").remedy
     assert "did you mean" not in problem("mesh.face_widht_mm").remedy
+    assert "did you mean dynamics.speed_rpm?" in problem("dynamics.speeds_rpm").remedy  # speeds is a number of them
+    assert "did you mean load?" in problem("laod", {"torque_Nm": 1}).remedy

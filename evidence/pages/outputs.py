@@ -173,9 +173,9 @@ SECTIONS = (
 )  # fmt: skip
 INTRODUCTION = f"""
 What a run leaves in its folder, `--out`. Units stand in the names: `_um` is µm, `_Nm` is N·m. Numbers in CSV files have
-nine digits, and `nan` where there is none. A text that a spreadsheet would compute, as it begins with =, +, - or @, stands
-behind an apostrophe; a text that begins with an apostrophe has two. Other programs should read `summary.json` and the CSV
-files.
+nine digits, and `nan` where there is none. A text that a spreadsheet would compute, as it begins with =, +, - or @,
+stands behind an apostrophe; a text that begins with an apostrophe has two. Other programs should read `summary.json`
+and the CSV files.
 
 `summary.json` follows the [JSON schema](summary.schema.json) of `schema_version` {SCHEMA_VERSION}. New keys may come
 without a new version; where a key goes or means something else the version is one more, and CHANGELOG.md says so.

@@ -112,11 +112,13 @@ def _number(path: Path, line: int, header: list[str], row: list[str], at: int, f
     return value * factor
 
 
-def require_ascending(path: Path, name: str, values: Floats) -> None:
-    """Raises TableError unless every value is above the previous one."""
+def require_ascending(path: Path, column: Column, name: str, values: Floats) -> None:
+    """Raises TableError unless every value [mm] of a file's column is above the previous one. name: of the quantity."""
     falls = np.flatnonzero(np.diff(values) <= 0.0)
     if len(falls):
-        at = int(falls[0])
-        found = f"{values[at]:g} mm and then {values[at + 1]:g} mm"
+        header = _lines(path)[0]
+        at, factor = _place(path, header, column)
+        unit = header[at].removeprefix(f"{column.quantity}_")
+        first, second = (f"{value / factor:g} {unit}" for value in values[falls[0] : falls[0] + 2])
         remedy = "sort the lines and leave out repeated ones"
-        raise TableError(path, f"{name} that rises from line to line", found, remedy)
+        raise TableError(path, f"{name} that rises from line to line", f"{first} and then {second}", remedy)

@@ -133,7 +133,7 @@ def is_plane(shape: GearShape) -> bool:
 def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[SweptPosition]) -> RunData:
     """The run with these positions. Raises ArchiveError if there is no position."""
     if not swept:
-        raise ArchiveError("wanted at least one position of the pitch, found none; let the run go on with --resume")
+        raise ArchiveError("wanted at least one position of the pitch, found none; `evolvent run ... --resume` goes on")
     flanks, materials = flank_facets(scene.gear_pair(), shapes, scene.mesh.order), scene.materials()
 
     def solved(result: PositionResult) -> SolvedPosition:

@@ -19,7 +19,8 @@ from evolvent.run.folder_checks import check_folder, require_no_study
 from evolvent.run.scene_run import run_scene
 from evolvent.run.start import resume_point, scene_to_solve
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.scene import Scene, scene_from_values
+from evolvent.scene.part_torque import under_torque
+from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
 
 PICTURE = "loads.png"
@@ -64,13 +65,8 @@ def load_scenes(scene: Scene, percents: Sequence[float]) -> Mapping[str, Scene]:
         found, allowed = "a load list of gears that wear", "a scene without [wear]"
         raise SceneError([InputProblem("wear", found, allowed, "delete the section, or take `evolvent run`")])
     torques = {percent: scene.load.torque_Nm * percent / 100.0 for percent in sorted(percents, reverse=True)}
-    served, values = (min(torques.values()), max(torques.values())), scene.model_dump(exclude_none=True)
-    return {
-        _folder(percent): scene_from_values(
-            {**values, "load": {**values["load"], "torque_Nm": torque, "mesh_torques_Nm": served}}
-        )
-        for percent, torque in torques.items()
-    }
+    served = min(torques.values()), max(torques.values())
+    return {_folder(percent): under_torque(scene, torque, served) for percent, torque in torques.items()}
 
 
 def _folder(percent: float) -> str:

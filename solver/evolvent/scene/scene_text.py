@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from evolvent.scene.schema.errors import LONGEST_TEXT, InputProblem, SceneError, dotted_part, shown
+from evolvent.scene.schema.guesses.meant_toml import value_written_otherwise, written_otherwise
 from evolvent_meshes.text_files import UnreadableText, read_text
 
 
@@ -84,31 +85,31 @@ def _require_short_keys(text: str, kind: FileKind) -> None:
 
 def _no_toml(text: str, error: Exception, kind: FileKind) -> InputProblem:
     """Why a text cannot be parsed as TOML, with the line where that was noticed."""
-    line = _named_line(text, str(error))
-    hint = number_hint(line.partition("=")[2])
-    remedy = f'mend that line{hint and ": "}{hint}; texts stand in "quotes", every key only once; {kind.example}'
+    number, line = _named_line(text, str(error))
+    remedy = f'mend that line; texts stand in "quotes", every key only once; {kind.example}'
+    if known := written_otherwise(line):
+        found = f"no TOML in line {number}, {_printable(line)}: {_printable(known.found)}"
+        return InputProblem(kind.name, found, "valid TOML 1.0", _printable(known.remedy))
     if isinstance(error, tomllib.TOMLDecodeError):
-        found = f"no TOML: {error}{line and ': '}{line}"
+        found = f"no TOML: {error}{line and ': '}{_printable(line)}"
         return InputProblem(kind.name, found, "valid TOML 1.0", remedy)
     if isinstance(error, RecursionError):
         return InputProblem(kind.name, "brackets nested too deep", f"tables and lists up to {DEEPEST} deep", remedy)
     return InputProblem(kind.name, "a number of thousands of digits", "numbers of up to 4300 digits", remedy)
 
 
-def _named_line(text: str, message: str) -> str:
-    """The line that a message of tomllib names, shortened and printable; empty where it names none."""
+def _named_line(text: str, message: str) -> tuple[int, str]:
+    """Number and text of the line that a message of tomllib names; 0 and empty where it names none."""
     number = re.search(r"\(at line (\d+), ", message)
     lines = text.replace("\r\n", "\n").split("\n")
     if number is None or int(number[1]) > len(lines):
-        return ""
-    line = lines[int(number[1]) - 1].strip()
-    return "".join(c if c.isprintable() else "?" for c in line[:LONGEST_TEXT]) + "..." * (len(line) > LONGEST_TEXT)
+        return 0, ""
+    return int(number[1]), lines[int(number[1]) - 1].strip()
 
 
-def number_hint(text: str) -> str:
-    """How a number is written, where a text begins with one that has a comma or a unit; else empty."""
-    wrong = re.match(r"\s*[-+]?\d[\d_.]*([eE][-+]?\d+)?(,\d|\s*[^\W\d_]|\s*[°%])", text)
-    return "a decimal point, not a comma; no unit after a number" if wrong else ""
+def _printable(text: str) -> str:
+    """The text shortened, with a question mark for what cannot be printed."""
+    return "".join(c if c.isprintable() else "?" for c in text[:LONGEST_TEXT]) + "..." * (len(text) > LONGEST_TEXT)
 
 
 def require_kind(values: Mapping[str, Any], kind: FileKind) -> None:
@@ -166,7 +167,8 @@ def _parsed(name: str, text: str) -> Any:
         return parsed["value"]
     if re.fullmatch(r"[A-Za-z][\w -]*|[^\"'\[]+\.csv", text):  # shells take the quotes away: --set mesh.level=quick
         return text
-    hint = number_hint(text)
+    known = value_written_otherwise(text)
     example = f"""write for example --set '{name}=1.5' or --set '{name}=[0.1, 0.2]', in quotes for the shell"""
-    found, remedy = shown(text) if text else "nothing after the =", f"{hint}{hint and '; '}{example}"
+    found = shown(text) if text else "nothing after the ="
+    remedy = example if known is None else f"{_printable(known.remedy)}, as --set '{name}=...' in quotes for the shell"
     raise SceneError([InputProblem(name, found, "one TOML value", remedy)])

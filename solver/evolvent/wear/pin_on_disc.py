@@ -82,7 +82,7 @@ class Record:
             wanted, remedy = "a sliding distance from 0 m on", "give the distance up to which lines are left out"
             raise TableError("running in (--run-in-m)", wanted, f"{1e-3 * run_in:g} m", remedy)
         distance, depth = read_columns(path, (DISTANCE, DEPTH))
-        require_ascending(path, "a sliding distance", distance)
+        require_ascending(path, DISTANCE, "a sliding distance", distance)
         later = distance >= run_in
         if np.count_nonzero(later) < MIN_LINES:
             wanted, found = f"at least {MIN_LINES} lines from {1e-3 * run_in:g} m on", f"{np.count_nonzero(later)}"

@@ -92,8 +92,8 @@ RECORDS: dict[str, tuple[bytes, str, str]] = {
     "header alone": (RECORD_HEADER.encode(), "1 lines", "name quantity and unit"),
     "one line": ((RECORD_HEADER + "1000,1\n").encode(), "1", "at least 5 lines"),
     "time for distance": (RECORD.replace("sliding_distance_m", "time_s").encode(), "time_s", "sliding_distance_mm or"),
-    "falling distance": ("\n".join([RECORD_HEADER.strip(), *RECORD.splitlines()[:0:-1]]).encode(), "8e+06", "sort the"),
-    "same distance": ((RECORD_HEADER + "1000,1\n" * 8).encode(), "1e+06 mm and then 1e+06", "sort the lines"),
+    "falling distance": ("\n".join([RECORD_HEADER.strip(), *RECORD.splitlines()[:0:-1]]).encode(), "8000 m and", "sort"),
+    "same distance": ((RECORD_HEADER + "1000,1\n" * 8).encode(), "1000 m and then 1000 m", "sort the lines"),
     "no wear": ((RECORD_HEADER + "".join(f"{k},1\n" for k in range(8))).encode(), "0", "is the record's depth rising"),
     "depth called mm": ((RECORD_HEADER.replace("_um", "_mm") + "".join(f"{k},{k}\n" for k in range(9))).encode(),
                         "5.65e-05", "is the record's depth rising"),
@@ -131,13 +131,13 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "run: empty level": (["run", SCENE, "--out", "{folder}/out", "--level", ""], "mesh.level", '""', "quick is for"),
     "run: unknown level": (["run", SCENE, "--out", "{folder}/out", "--level", "ultra"], "mesh.level", "ultra", "quick"),
     "run: level with quotes": (
-        ["run", SCENE, "--out", "{folder}/out", "--level", 'fine"'], "mesh.level", '"fine\\""', "quick is for",
+        ["run", SCENE, "--out", "{folder}/out", "--level", 'fine"'], "mesh.level", '"fine\\""', 'write "fine"',
     ),
     "run: level without a name": (["run", SCENE, "--level"], "--level", "nothing", "a value behind the option"),
     "run: set without a value": (["run", SCENE, "--set"], "--set", "nothing", "a value behind the option"),
     "run: set nothing": (["run", SCENE, "--out", "{folder}/out", "--set", ""], "--set", '""', "write for example"),
     "run: no skip of that name": (
-        ["run", SCENE, "--out", "{folder}/out", "--no-skip", "pictres"], "skip.off[0]", '"pictres"', "give names of",
+        ["run", SCENE, "--out", "{folder}/out", "--no-skip", "pictres"], "skip.off[0]", '"pictres"', 'write "pictures"',
     ),
     "run: empty skip": (["run", SCENE, "--out", "{folder}/out", "--no-skip", ""], "skip.off[0]", '""', "give names of"),
     "run: no such scene": (

@@ -19,7 +19,8 @@ from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.scene import Scene, scene_from_values
+from evolvent.scene.part_torque import under_torque
+from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Floats
 
 NARROWEST = 0.35
@@ -84,14 +85,7 @@ def scene_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:
     ascending = sorted(percents)
     torques = [scene.load.torque_Nm * percent / 100.0 for percent in ascending]
     for torque in (torques[0], torques[-1]):  # the limits of a torque are those of a range
-        _under(scene, torque)
+        under_torque(scene, torque)
     if scene.load.mesh_torques_Nm is None:
-        scene = _under(scene, min(max(scene.load.torque_Nm, torques[0]), torques[-1]))
+        scene = under_torque(scene, min(max(scene.load.torque_Nm, torques[0]), torques[-1]))
     return SceneTorques(scene.model_copy(update={"wear": None}), tuple(1e3 * torque for torque in torques))
-
-
-def _under(scene: Scene, torque: float) -> Scene:
-    """On meshes for this torque [N·m] alone."""
-    values = scene.model_dump(exclude_none=True)
-    load = {name: value for name, value in values["load"].items() if name != "mesh_torques_Nm"}
-    return scene_from_values({**values, "load": {**load, "torque_Nm": torque}})

@@ -40,6 +40,24 @@ def _inertia(gear: str) -> Any:
     )  # fmt: skip
 
 
+def _percents_remedy(given: tuple[float, ...]) -> str:
+    """What is wrong with torque_percents."""
+    if wrong := [each for each in given if not 0.0 < each <= 1000.0]:
+        return f"leave out {shown(wrong[0])}, which is not above 0 up to 1000"
+    if twice := [each for each in given if given.count(each) > 1]:
+        return f"give {shown(twice[0])} once"
+    return "add 100, the torque itself"
+
+
+def _map_remedy(given: tuple[float, ...]) -> str:
+    """What is wrong with map_percents."""
+    if wrong := [each for each in given if not MAP_RANGE[0] <= each <= MAP_RANGE[1]]:
+        return f"leave out {shown(wrong[0])}"
+    if twice := [each for each in given if given.count(each) > 1]:
+        return f"give {shown(twice[0])} once"
+    return "add another torque"
+
+
 class DynamicsSection(SceneSection):
     """[dynamics]: torsional vibration of both gears on their mesh, over the speed. `evolvent dynamics` reads it, and
     `evolvent run` where it has an operating speed."""
@@ -160,8 +178,7 @@ class DynamicsSection(SceneSection):
             raise validation_error(InputProblem("speed_rpm", shown(speeds), SPEEDS, remedy))
         given = self.torque_percents
         if not all(0.0 < each <= 1000.0 for each in given) or len(set(given)) < len(given) or 100.0 not in given:
-            remedy = "add 100, the torque itself, and give each once"
-            raise validation_error(InputProblem("torque_percents", shown(given), PERCENTS, remedy))
+            raise validation_error(InputProblem("torque_percents", shown(given), PERCENTS, _percents_remedy(given)))
         histories = self.histories_rpm
         if not all(0.0 < each <= FASTEST for each in histories) or len(set(histories)) < len(histories):
             remedy = "give each once" if len(set(histories)) < len(histories) else "speeds of response.csv fit"
@@ -175,11 +192,12 @@ class DynamicsSection(SceneSection):
             return self
         inside = all(MAP_RANGE[0] <= each <= MAP_RANGE[1] for each in given)
         if not inside or len(set(given)) < len(given) or len(given) < MAP[0]:
-            remedy = "give each once, within these limits, or delete the key for no map"
+            remedy = f"{_map_remedy(given)}, or delete the key for no map"
             raise validation_error(InputProblem("map_percents", shown(given), f"a list of {MAP_PERCENTS}", remedy))
         if max(given) > heaviest:
             allowed = f"none above {heaviest:g}, the heaviest of torque_percents: the force surface ends there"
-            raise validation_error(InputProblem("map_percents", shown(given), allowed, "add heavier torque_percents"))
+            remedy = f"add {shown(max(given))} to torque_percents"
+            raise validation_error(InputProblem("map_percents", shown(given), allowed, remedy))
         return self
 
     @model_validator(mode="after")

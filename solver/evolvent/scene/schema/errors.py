@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -134,7 +134,7 @@ def _problem(path: list[str | int], details: ErrorDetails, model: type[SceneSect
     field = _declaration([part for part in path if isinstance(part, str)], model)
     section = section_of(field)
     if section is not None:
-        return _missing_section(path, section) if missing else _not_a_section(path, details["input"], section)
+        return _missing_section(path, section) if missing else _not_a_section(path, details["input"], field, section)
     extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
     allowed, remedy = str(extra["allowed"]), str(extra[BEYOND.get(details["type"], "remedy")])
     if missing:
@@ -143,6 +143,8 @@ def _problem(path: list[str | int], details: ErrorDetails, model: type[SceneSect
     with_point = isinstance(value, float) and (meant is not None or details["type"] == "int_type")
     found = repr(value) if with_point else shown(value)  # where 20 is allowed, 20.0 must show its point
     fitting = f"write {shown(meant)}" if meant is not None else expected(details["type"], value)
+    if isinstance(meant, dict):
+        fitting = f"write [{dotted(path)}] in place of [[{dotted(path)}]]"
     return InputProblem(dotted(path), found, allowed, fitting or remedy)
 
 
@@ -179,8 +181,11 @@ def key_problem(name: str, value: Any, model: type[SceneSection]) -> InputProble
     for depth in range(1, len(path)):
         if not any(each.startswith(".".join([*path[:depth], ""])) for each in keys):
             return _unknown_key(list(path[:depth]), {".".join(path[depth:]): value}, model)
-    section = section_of(_declaration(path, model)) if any(each.startswith(f"{name}.") for each in keys) else None
-    return _not_a_section(list(path), value, section) if section else _unknown_key(list(path), value, model)
+    field = _declaration(path, model) if any(each.startswith(f"{name}.") for each in keys) else None
+    section = None if field is None else section_of(field)
+    if field is None or section is None:
+        return _unknown_key(list(path), value, model)
+    return _not_a_section(list(path), value, field, section)
 
 
 def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -> InputProblem:
@@ -215,10 +220,12 @@ def _meant(name: str, parents: list[str], model: type[SceneSection], is_section:
     return found
 
 
-def _not_a_section(path: list[str | int], value: Any, section: type[BaseModel]) -> InputProblem:
-    """The problem with a value in place of a section."""
-    keys = ", ".join(section.model_fields)
-    name = dotted(path)
+def _not_a_section(path: list[str | int], value: Any, field: FieldInfo, section: type[BaseModel]) -> InputProblem:
+    """The problem with a value in place of a section, or of a list of sections."""
+    keys, name = ", ".join(section.model_fields), dotted(path)
+    if len(path) == 1 and get_origin(field.annotation) is tuple:
+        allowed = f"one or more sections [[{name}]], each with the keys {keys}"
+        return InputProblem(name, shown(value), allowed, f"write [[{name}]] in place of [{name}]")
     return InputProblem(name, shown(value), f"a section with the keys {keys}", f"write [{name}] above its keys")
 
 

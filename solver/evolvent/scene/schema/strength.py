@@ -22,7 +22,8 @@ class GaugesSection(SceneSection):
     """[strength.gauges]: strain gauges along the profile of roots, one for each place of its lists."""
 
     gear: Annotated[tuple[Literal["pinion", "wheel"], ...], BeforeValidator(as_tuple)] = key(
-        "gear of each gauge", 'a list of "pinion" and "wheel"', min_length=1, max_length=MOST_GAUGES
+        "gear of each gauge", f'a list of up to {MOST_GAUGES}, each "pinion" or "wheel"',
+        f"name the gear of each gauge; more than {MOST_GAUGES} take another scene", min_length=1, max_length=MOST_GAUGES
     )
     side: Annotated[tuple[Literal["loaded", "back"], ...], BeforeValidator(as_tuple)] = key(
         "root below the loaded flank, or below the back", 'a list of "loaded" and "back", as long as gear', min_length=1

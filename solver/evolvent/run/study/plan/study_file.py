@@ -120,7 +120,7 @@ class StudyFile(SceneSection):
     )  # fmt: skip
     figures: Texts | None = key(
         "figures that the table gathers, by name; those of the computation by default", "a list of names of figures",
-        default=None, min_length=1,
+        "give names of figures in a list; a figure of your own is a section [[figure]]", default=None, min_length=1,
     )  # fmt: skip
     leave_out: Texts = key("keys of the base scene that are left out", "a list of keys of the scene", default=())
     share_gears: bool = key(

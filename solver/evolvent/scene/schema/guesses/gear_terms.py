@@ -41,7 +41,7 @@ GEAR_TERMS: tuple[Term, ...] = (
     Term("gear.z teeth number_of_teeth tooth_number teeth_number tooth_count no_of_teeth num_teeth n_teeth zaehnezahl "
          "zähnezahl", ("gear.teeth",), source=ISO),
     Term("z1 z_1", ("pinion.teeth",), source=ISO), Term("z2 z_2", ("wheel.teeth",), source=ISO),
-    Term("gear.x gear.x_n addendum_modification addendum_modification_coefficient addendum_mod "
+    Term("gear.x gear.x_n profile_shift addendum_modification addendum_modification_coefficient addendum_mod "
          "addendum_mod_coefficient "
          "profile_shift_coefficient profile_shift_factor rack_shift rack_shift_coefficient x_factor x_coefficient "
          "profilverschiebung profilverschiebungsfaktor profile_correction", ("gear.profile_shift",), OF_MODULE, ISO),

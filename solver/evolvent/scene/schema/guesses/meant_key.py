@@ -1,4 +1,4 @@
-"""Guesses what was meant by an unknown key or section: by tables of words, by its name elsewhere, by its spelling."""
+"""Guesses what was meant by an unknown key or section: by tables of words, by its spelling, by its name elsewhere."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from evolvent.scene.schema.guesses.gear_terms import GEAR_TERMS
 from evolvent.scene.schema.guesses.nearest_key import nearest_key
 from evolvent.scene.schema.guesses.other_terms import OTHER_TERMS, SECTION_TERMS, STUDY_TERMS
 from evolvent.scene.schema.guesses.terms import Meant, meant_by
-from evolvent.scene.schema.guesses.units import stem_of
+from evolvent.scene.schema.guesses.units import are_of_one_quantity, stem_of
 
 KEY_TERMS = {"scene": (*GEAR_TERMS, *OTHER_TERMS), "study": STUDY_TERMS}
 """Kind of file -> words for keys."""
+DEEP = 2
+"""Dots of keys that are not looked for elsewhere: those of gauges and of the materials of single gears."""
 
 
 def meant_key(name: str, section: str, here: Collection[str], everywhere: Collection[str], kind: str) -> Meant | None:
@@ -23,15 +25,15 @@ def meant_key(name: str, section: str, here: Collection[str], everywhere: Collec
     kind:       of the file, of `KEY_TERMS`.
     """
     stem = stem_of(name)
-    if same := [key for key in here if stem_of(key) == stem]:
+    if same := [key for key in here if stem_of(key) == stem and are_of_one_quantity(name, key)]:
         return Meant((nearest_key(name, same) or same[0],), "")
     for word in (name.lower(), stem):  # m_n ends with no unit
         if meant := meant_by(word, section, KEY_TERMS[kind]):
             return meant
-    if "_" in stem and (same := [key for key in everywhere if key.rpartition(".")[2].lower() == name.lower()]):
-        return Meant(tuple(same), "")
-    near = nearest_key(name, here)
-    return Meant((near,), "") if near else None
+    if near := nearest_key(name, here):
+        return Meant((near,), "")
+    named = [key for key in everywhere if key.count(".") < DEEP and key.rpartition(".")[2].lower() == name.lower()]
+    return Meant(tuple(named), "") if "_" in name and named else None  # single words name other things elsewhere
 
 
 def meant_section(name: str, parent: str, here: Collection[str], kind: str) -> Meant | None:

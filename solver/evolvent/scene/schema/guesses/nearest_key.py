@@ -48,4 +48,6 @@ def _alike(one: str, other: str) -> bool:
 
 
 def _ratio(one: str, other: str) -> float:
-    return difflib.SequenceMatcher(None, one, other).ratio()
+    """Similarity of two texts; letters that are swapped do not count."""
+    swapped = len(one) > SHORT and one[0] == other[0] and sorted(one) == sorted(other)
+    return ALIKE if swapped else difflib.SequenceMatcher(None, one, other).ratio()

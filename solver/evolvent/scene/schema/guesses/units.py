@@ -31,7 +31,7 @@ UNITS: dict[str, tuple[str, float]] = {
 """Unit -> quantity, and its value in one of that quantity's units."""
 ENDING = re.compile(rf"_({'|'.join(sorted(UNITS, key=len, reverse=True))})$", re.IGNORECASE)
 SPELLED = {unit.lower(): unit for unit in reversed(UNITS)}
-WORDS = {1e9: "divide by 1e9", 180.0 / math.pi: "multiply by 180/π", 30.0 / math.pi: "multiply by 30/π"}
+WORDS = {1e-9: "divide by 1e9", 180.0 / math.pi: "multiply by 180/π", 30.0 / math.pi: "multiply by 30/π"}
 
 
 def unit_of(key: str) -> str:
@@ -61,6 +61,7 @@ def unit_conversion(name: str, meant: str) -> str:
 
 
 def are_of_one_quantity(name: str, meant: str) -> bool:
-    """Whether two keys may hold the same quantity by the units that end them."""
-    one, other = (UNITS.get(unit_of(each), ("", 1.0))[0] for each in (name, meant))
-    return not one or not other or one == other
+    """Whether an unknown key may hold the quantity of another one, by the units that end them: without a unit it may,
+    with one only where that has one of the same quantity."""
+    given, wanted = (UNITS.get(unit_of(each), ("", 1.0))[0] for each in (name, meant))
+    return not given or given == wanted

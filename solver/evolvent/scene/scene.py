@@ -92,12 +92,6 @@ class Scene(SceneSection):
         return self
 
     @model_validator(mode="after")
-    def _vibration_is_possible(self) -> Self:
-        if (self.dynamics or self.transient) and (problem := impossible(self.planned_vibration())):
-            raise validation_error(problem)
-        return self
-
-    @model_validator(mode="after")
     def _contact_has_a_width(self) -> Self:
         unit = self.model_copy(update={"load": self.load.model_copy(update={"torque_Nm": 1.0})}).hertz_estimate()
         half_width = float(unit.half_width(0.0)) * math.sqrt(self.load.torque_Nm)
@@ -117,6 +111,12 @@ class Scene(SceneSection):
             allowed = f"up to {rounded_down(most)} N·m for these gears, as strains must stay small"
             remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
             raise validation_error(InputProblem("load.torque_Nm", found, allowed, remedy))
+        return self
+
+    @model_validator(mode="after")
+    def _vibration_is_possible(self) -> Self:
+        if (self.dynamics or self.transient) and (problem := impossible(self.planned_vibration())):
+            raise validation_error(problem)
         return self
 
     @model_validator(mode="after")

@@ -148,8 +148,7 @@ def _speeds(planned: PlannedVibration) -> Iterator[InputProblem]:
                 "where rotation alone bursts a steel disc"
             )
             yield InputProblem(name, shown(speeds), allowed, "check that speeds are in r/min and diameters in mm")
-        least = SLOWEST * planned.natural_speed
-        if name.startswith("dynamics.") and min(speeds) < least:
+        if name.startswith("dynamics.") and min(speeds) < (least := SLOWEST * planned.natural_speed):
             allowed = (
                 f"from {rounded_up(least)} r/min on for these gears, a hundredth of the natural speed by ISO 6336-1: "
                 "below, vibration dies away within a mesh period, and the load is as good as static"

@@ -90,7 +90,7 @@ def test_gears_that_wear_have_no_load_list() -> None:
         load_scenes(spur_scene(*SHORT, *wearing), [50.0, 100.0])
 
 
-@pytest.mark.parametrize("percents", ["0,50", "50,50", "fifty", "2000", ",".join(map(str, range(1, 32)))])
+@pytest.mark.parametrize("percents", ["0,50", "50,50", "fifty", "2000"])
 def test_impossible_percentages_are_refused(percents: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Status 2 before anything is written."""
     status = main(["loads", "demos/first_pair.toml", "--out", str(tmp_path / "out"), "--percent", percents])

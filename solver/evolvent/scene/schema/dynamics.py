@@ -97,7 +97,7 @@ class DynamicsSection(SceneSection):
     )
     backlash_um: float | None = key(
         "backlash along the line of action in the transverse section, from flank to flank; by default that of the "
-        "gears' tooth thicknesses at their centre distance",
+        "gears' tooth thicknesses at their centre distance, where these give one",
         "a number from 0 to 1e5, in µm", "delete the key for the default", default=None, ge=0, le=1e5,
     )  # fmt: skip
     density_kg_m3: float = key(

@@ -16,7 +16,7 @@ from evolvent.results.fields.deformation import Deformation
 from evolvent.results.fields.paraview import write_fields
 from evolvent.results.mesh_facts import NARROW, MeshFacts, cells_across
 from evolvent.results.run_data import RunData, run_data
-from evolvent.results.tables.headlines import headlines
+from evolvent.results.tables.headlines import has_error_bars, headlines
 from evolvent.results.tables.summary_rows import RunFacts
 from evolvent.results.tables.tables import summary, write_summary, write_tables
 from evolvent.run.context import RunContext
@@ -24,8 +24,9 @@ from evolvent.run.pitch_run import SweepRecord
 from evolvent.run.run_log import RunLog
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import skipped, wanted_output
+from evolvent.wear.results.worn_lines import worn_lines
 
-SUMMARY, FIELDS = "summary.json", "fields for ParaView"
+SUMMARY, WEAR, FIELDS = "summary.json", "wear.json", "fields for ParaView"
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,8 @@ def write_output(run: RunContext, scene: Scene, record: SweepRecord, extra: Extr
 def last_lines(out: Path, scene: Scene) -> str:
     """What a run prints at its end: its figures, and where all of them are."""
     figures = headlines(out / SUMMARY) if (out / SUMMARY).exists() else []
+    if scene.wear is not None and (out / WEAR).exists():
+        figures = worn_lines(out / WEAR, figures, scene)
     return "\n".join([*figures, whereabouts(out, scene)])
 
 
@@ -84,15 +87,20 @@ def whereabouts(out: Path, scene: Scene) -> str:
     wanted = wanted_output(scene)
     asked = {"pictures": wanted.pictures or wanted.animation, FIELDS: wanted.fields or wanted.deformation}
     kinds = {
-        "figures with error bars": (SUMMARY,),
+        _figures(out): (SUMMARY,),
         "tables": ("positions.csv", "teeth.csv", "wear.csv"),
-        "figures of wear": ("wear.json",),
+        "figures of wear": (WEAR,),
         "pictures": ("pictures",),
         FIELDS: ("fields/contact.pvd",),
     }
     kinds = {kind: names for kind, names in kinds.items() if asked.get(kind, True)}
     existing = {kind: [str(out / name) for name in names if (out / name).exists()] for kind, names in kinds.items()}
     return "done: " + "; ".join(f"{kind} in {', '.join(paths)}" for kind, paths in existing.items() if paths)
+
+
+def _figures(out: Path) -> str:
+    """What summary.json has, in words."""
+    return "figures with error bars" if (out / SUMMARY).exists() and has_error_bars(out / SUMMARY) else "figures"
 
 
 def show(data: RunData, run: RunContext) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import os
 import pty
 import re
@@ -171,12 +172,21 @@ def test_run_on_a_terminal_completes_its_stages(tmp_path: Path) -> None:
     assert [name for name in STAGES if f"✓ {name}" in text] == list(STAGES)
 
 
+@pytest.mark.parametrize("bars", [None, {"loss_percent": 0.1}])
+def test_last_line_says_whether_figures_have_error_bars(bars: dict[str, float] | None, tmp_path: Path) -> None:
+    """Problem: `output.error_bars = false`, or a companion that failed. Exact: error bars are named only where the
+    summary has them."""
+    (tmp_path / "summary.json").write_text(json.dumps({"frictions": [{"estimated_error": bars}]}))
+    said = whereabouts(tmp_path, spur_scene("output.error_bars=false"))
+    assert said == f"done: figures{' with error bars' if bars else ''} in {tmp_path}/summary.json"
+
+
 def test_last_line_names_existing_requested_files(tmp_path: Path) -> None:
     """Of a run without pictures and fields neither is named; those of an earlier part of it are not, where the scene
     asks for none now."""
     asked, unasked = (spur_scene(f"output.pictures={on}", "output.animation=false", f"output.fields={on}")
                       for on in ("true", "false"))  # fmt: skip
-    (tmp_path / "summary.json").write_text("{}")
+    (tmp_path / "summary.json").write_text(json.dumps({"frictions": [{"estimated_error": {"loss_percent": 0.1}}]}))
     (tmp_path / "teeth.csv").write_text("")
     wanted = f"done: figures with error bars in {tmp_path}/summary.json; tables in {tmp_path}/teeth.csv"
     assert whereabouts(tmp_path, asked) == wanted

@@ -13,7 +13,8 @@ from evolvent.scene.skips import wanted_output
 METHOD = (
     "difference to the same scene on meshes of twice the element size; of a pressure, between the tip-edge zones: "
     "difference to Hertz for the slices' own line loads, plus the difference of these loads between the meshes; plus, "
-    "of all figures, what may lie between the positions, on the start of a linear relief too (spacing_error); where "
+    "of all figures, what may lie between the positions (spacing_error); the largest pressure of a spur pair is that "
+    "away from the starts of linear reliefs; where "
     "flanks have levels, what the reach of their patches leaves out is not in it (docs/two_level.md)"
 )
 """How error bars are estimated, as summary.json says it; bars archived with another method are estimated anew."""

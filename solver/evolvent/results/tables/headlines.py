@@ -29,11 +29,16 @@ modifications, has 1.1 under its torque."""
 def headlines(summary: Path) -> list[str]:
     """A line per friction coefficient from summary.json, each value with its error bar where there is one."""
     rows = json.loads(summary.read_text(encoding="utf-8"))["frictions"]
-    return [f"μ = {row['friction']:g}: {', '.join(_texts(row))}" for row in rows]
+    return [f"μ = {row['friction']:g}: {', '.join(figure_texts(row, row['estimated_error'] or {}))}" for row in rows]
 
 
-def _texts(row: Mapping[str, Any]) -> list[str]:
-    bars = row["estimated_error"] or {}
+def has_error_bars(summary: Path) -> bool:
+    """Whether the figures of summary.json have error bars."""
+    return any(row["estimated_error"] for row in json.loads(summary.read_text(encoding="utf-8"))["frictions"])
+
+
+def figure_texts(row: Mapping[str, Any], bars: Mapping[str, float | None]) -> list[str]:
+    """Name, value, error bar and unit of each figure that is known. row, bars: by key of summary.json."""
     known = [figure for figure in FIGURES if _said(figure[0], row.get(figure[0]))]
     names = {LARGEST: AWAY} if row.get("kink_pressure_MPa") is not None else {}
     return [

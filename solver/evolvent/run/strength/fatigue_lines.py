@@ -39,14 +39,22 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
     known = {(row["friction"], row["criterion"], row["place"]): row for row in rows if _is_known(row["value"])}
     frictions = list(dict.fromkeys(row["friction"] for row in rows))
     for friction in frictions:
+        changed = friction != frictions[0]
         shown = [
-            (name, known[friction, criterion.name, place])
+            (name, _with_flags(row, known.get((frictions[0], criterion.name, place)) if changed else None))
             for criterion, place, name in SHOWN
-            if (friction, criterion.name, place) in known
+            if (row := known.get((friction, criterion.name, place))) is not None
         ]
-        parts = [f"{_named(name, row)} {_value(row, friction != frictions[0])}" for name, row in shown]
-        found = [", ".join(parts), *_flags(shown)] if parts else [NOTHING]
+        parts = [f"{_named(name, row, changed)} {_value(row, changed)}" for name, row in shown]
+        found = [", ".join(parts), *_flags(shown, changed)] if parts else [NOTHING]
         yield f"μ = {float(friction):g}: {'; '.join(found)}"
+
+
+def _with_flags(row: Row, first: Row | None) -> Row:
+    """A row with the flags of the point that is printed: where it is that of the first coefficient, of its row."""
+    if first is None or not _at_point(row, changed=True):
+        return row
+    return row | {name: first[name] for name in ("at_zone_end", "near_friction_reversal")}
 
 
 def _is_known(text: str) -> bool:
@@ -54,24 +62,33 @@ def _is_known(text: str) -> bool:
     return not math.isnan(float(text))
 
 
-def _named(name: str, row: Row) -> str:
-    """With the depth, where a criterion has one."""
+def _named(name: str, row: Row, changed: bool) -> str:
+    """With the depth, where a criterion has one. changed: see `_value`."""
     if row["criterion"] == CONTACT_PRESSURE.name:
         return name
-    return f"{name} " + ("at the surface" if row["place"] == SURFACE else f"{float(row['depth_um']):.3g} µm deep")
+    depth = float(row["point_depth_um" if _at_point(row, changed) else "depth_um"])
+    return f"{name} " + ("at the surface" if row["place"] == SURFACE else f"{depth:.3g} µm deep")
 
 
 def _value(row: Row, changed: bool) -> str:
-    """With its error bar. changed: with its change too, where it is known."""
-    value = plus_minus(float(row["value"]), float(row["value_error"] or "nan"), 0)
-    changed &= _is_known(row["change_at_points_percent"])
-    change = f" ({float(row['change_at_points_percent']):+.1f} %)" if changed else ""
-    return f"{value} {row['unit']}{change}"
+    """With its error bar. changed: at the point of the flank where it is largest at the first coefficient, with its
+    change there and in the median over points, where they are known."""
+    at_point = _at_point(row, changed)
+    value = plus_minus(float(row["point_value" if at_point else "value"]), float(row["value_error"] or "nan"), 0)
+    there = [f"{float(row['change_percent']):+.1f} % at this point"] if at_point else []
+    known = changed and _is_known(row["change_at_points_percent"])
+    median = [f"{float(row['change_at_points_percent']):+.1f} % in the median"] if known else []
+    return f"{value} {row['unit']}" + (f" ({', '.join([*there, *median])})" if there or median else "")
 
 
-def _flags(shown: Sequence[tuple[str, Row]]) -> Iterator[str]:
-    """Which values lie where they do not hold."""
+def _at_point(row: Row, changed: bool) -> bool:
+    """Whether a row has a value at the point at which friction coefficients are compared, and that is to be printed."""
+    return changed and _is_known(row["change_percent"])
+
+
+def _flags(shown: Sequence[tuple[str, Row]], changed: bool) -> Iterator[str]:
+    """Which values lie where they do not hold. changed: see `_value`."""
     for column, words in FLAGS.items():
-        flagged = [_named(name, row) for name, row in shown if row[column] == str(True)]
+        flagged = [_named(name, row, changed) for name, row in shown if row[column] == str(True)]
         if flagged:
             yield f"{words}: {'all of these' if len(flagged) == len(shown) else ', '.join(flagged)}"

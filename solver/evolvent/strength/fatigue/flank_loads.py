@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from evolvent.gears.pressure.contact_slices import Slices, layer_edges, slice_numbers
-from evolvent.gears.pressure.line_peaks import between, has_peak, pooled_peaks
+from evolvent.gears.pressure.line_peaks import between, counts, pooled_peaks
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.strength.fatigue.half_plane import HertzTractions, LineForces
 from evolvent_meshes.arrays import Floats, Ints
@@ -24,7 +24,8 @@ from evolvent_meshes.arrays import Floats, Ints
 
 @dataclass(frozen=True)
 class FlankLoads:
-    """The n slices of all positions of a pitch that are loaded between the tip-edge zones."""
+    """The n slices of all positions of a pitch that are loaded between the tip-edge zones, away from the starts of linear
+    reliefs."""
 
     place: Ints
     """(n, 3) position in the pitch, tooth pair and layer of the face: the same points at other friction coefficients
@@ -60,7 +61,7 @@ class LoadedPosition:
     """(m,) z of the pinion flank's nodes [mm]."""
 
     def loads(self, inner: tuple[float, float]) -> FlankLoads:
-        """Of the slices between the tip-edge zones. inner: see `RunData.inner_path`."""
+        """Of the slices between the tip-edge zones, away from the starts of linear reliefs. inner: see `RunData.inner_path`."""
         chosen = self._chosen(inner)
         cut, peak = self.cut, pooled_peaks(self.cut)[chosen]
         half = 2.0 * cut.line_load[chosen] / (np.pi * peak)
@@ -90,7 +91,7 @@ class LoadedPosition:
         return LineForces(c.across[here] - centre, force[:, 0], along)
 
     def _chosen(self, inner: tuple[float, float]) -> Ints:
-        return np.flatnonzero(has_peak(self.cut) & between(self.cut.roll_distance, inner))
+        return np.flatnonzero(counts(self.cut) & between(self.cut.roll_distance, inner))
 
     @cached_property
     def _numbers(self) -> tuple[Ints, Ints, Ints]:

@@ -31,7 +31,8 @@ class FatigueFacts:
     points: int
     """Points of each flank at which criteria are evaluated: slices of the contact at all positions."""
     left_out_percent: float
-    """Slices under load that are left out, as they lie on a tip edge or in its zone, where pressure is singular."""
+    """Slices under load that are left out, as they lie on a tip edge or in its zone, where pressure is singular, or
+    cover the start of a linear relief of a spur pair, where it depends on how sharp the kink is."""
     near_reversal_percent: float
     """Points of the pinion near which friction reverses: histories do not hold there (near_friction_reversal)."""
     largest_pressure_MPa: float

@@ -47,12 +47,19 @@ class FatigueRow:
     not hold. Never of contact pressure."""
     at_depth_limit: bool
     """Whether, below, it is largest at the first or the last depth: it is no maximum over the depth then."""
+    point_roll_distance_mm: float
+    """Where friction coefficients are compared: the point of the flank at which the criterion is largest at the first
+    one, of those that both have. NaN where the criterion is below 1e-4 of the contact pressure there."""
+    point_value: float
+    """Value at this point, and for below largest over the depths."""
+    point_depth_um: float
+    """Depth of that."""
     change_percent: float
-    """Of the value over that at the first friction coefficient."""
+    """Of the value at this point over that at the first friction coefficient; NaN as above."""
     change_percent_error: float
     """How far the coarse companion's is from it; NaN without one."""
     change_at_points_percent: float
-    """Median over the points of the flank of the same change, of each point's value at this place."""
+    """Median over the points of the flank of the same change, of each point's value at this place; NaN as above."""
     change_at_points_percent_error: float
     """How far the coarse companion's is from it; NaN without one."""
 
@@ -75,8 +82,9 @@ class FatigueLifeRow:
     source: str
     """Of the exponent; empty for those of fatigue.exponents."""
     life_ratio: float
-    """By the largest values of the flank, each at a single point, which may lie beside a tip-edge zone (`at_zone_end`
-    of fatigue.csv) and at another one for each coefficient."""
+    """At one point of the flank, `point_roll_distance_mm` of fatigue.csv, which may lie beside a tip-edge zone
+    (`at_zone_end` of the first coefficient there). NaN where the criterion is negligible at the first coefficient;
+    infinite where it is at this one alone."""
     life_ratio_at_points: float
     """By the median change at the points of the flank, each compared with itself; quote both."""
 

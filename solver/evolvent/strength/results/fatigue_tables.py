@@ -10,7 +10,7 @@ import numpy as np
 from evolvent.strength.fatigue.criterion import BELOW, NEAR_SURFACE, SHALLOW, Criterion
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
 from evolvent.strength.results.fatigue_rows import FatigueDepthRow, FatigueLifeRow, FatigueMapRow, FatigueRow
-from evolvent.strength.results.friction_fatigue import FrictionFatigue, changes
+from evolvent.strength.results.friction_fatigue import FrictionFatigue, changes, compared_point
 from evolvent.strength.results.friction_reversal import near_reversal
 from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.member import Member
@@ -48,10 +48,10 @@ def life_rows(found: Sequence[FrictionFatigue], exponents: Sequence[float]) -> I
 
 
 def _lives(ratios: tuple[float, float], slope: float) -> tuple[float, float]:
-    """Infinite where nothing is left of a criterion, as of tension without friction."""
+    """Infinite where nothing is left of a criterion, as of tension without friction; NaN where there was none."""
     with np.errstate(divide="ignore", over="ignore"):
-        largest, at_points = np.power(ratios, -slope)
-    return float(largest), float(at_points)
+        at_point, at_points = np.power(ratios, -slope)
+    return float(at_point), float(at_points)
 
 
 def map_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[FatigueMapRow]:
@@ -116,27 +116,37 @@ def _largest(
     head = member.label, each.friction, criterion.name, place
     if not len(own.loads.peak):
         no = math.nan
-        return FatigueRow(*head, no, criterion.unit, no, no, no, no, no, no, False, False, False, no, no, no, no)
+        return FatigueRow(*head, no, criterion.unit, *[no] * 6, False, False, False, *[no] * 7)
     columns = np.flatnonzero(own.at(place))
     values = own.values[criterion][:, columns]
     k, m = np.unravel_index(int(np.argmax(values)), values.shape)
     ξ, value = float(own.loads.roll_distance[k]), float(values[k, m])
     reverses = criterion.of_history & near_reversal(pair, member, own.loads, each.friction)
     errors = _change_errors(member, each, criterion, place, first)
-    largest, at_points = _change_percents(own, first.gears[member], criterion, place)
+    at_point, at_points = _change_percents(own, first.gears[member], criterion, place)
     return FatigueRow(
         *head, value, criterion.unit, value * criterion.pressure_power * each.pressure_error,
         float(diameters(pair, member, np.array([ξ]))[0]), float(own.loads.height[k]),
         1e3 * float(own.depths_mm[k, columns[m]]), ξ, float(own.loads.peak[k]), each.at_zone_end(ξ), bool(reverses[k]),
-        place == BELOW and m in (0, len(columns) - 1), largest, errors[0], at_points, errors[1],
+        place == BELOW and m in (0, len(columns) - 1), *_point(own, first.gears[member], criterion, place),
+        at_point, errors[0], at_points, errors[1],
     )  # fmt: skip
+
+
+def _point(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str) -> tuple[float, float, float]:
+    """Roll distance [mm] of the point at which coefficients are compared, value there, and its depth [µm]."""
+    point = compared_point(own, first, criterion, place)
+    if point is None:
+        return math.nan, math.nan, math.nan
+    k = point[0]
+    return float(own.loads.roll_distance[k]), *_deepest(own, own.values[criterion][k], 1e3 * own.depths_mm[k], place)
 
 
 def _change_percents(
     own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str
 ) -> tuple[float, float]:  # fmt: skip
-    largest, at_points = changes(own, first, criterion, place)
-    return 100.0 * (largest - 1.0), 100.0 * (at_points - 1.0)
+    at_point, at_points = changes(own, first, criterion, place)
+    return 100.0 * (at_point - 1.0), 100.0 * (at_points - 1.0)
 
 
 def _change_errors(

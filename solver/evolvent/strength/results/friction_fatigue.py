@@ -9,7 +9,10 @@ import numpy as np
 
 from evolvent.strength.fatigue.criterion import Criterion
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
+from evolvent_meshes.arrays import Floats
 
+NEGLIGIBLE = 1e-4
+"""Of the contact pressure: a stress below it is none. Changes over it, and lives by them, would have no meaning."""
 BESIDE_ZONE = 0.02
 """Of the path between the tip-edge zones: what lies so near to a zone is at its end."""
 
@@ -35,16 +38,36 @@ class FrictionFatigue:
         return any(abs(roll_distance - end) < BESIDE_ZONE * float(np.ptp(path)) for end in self.zone_ends)
 
 
+def compared_point(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str) -> tuple[int, int] | None:
+    """The point of the flank at which a criterion is compared between friction coefficients, as its indices in `own`
+    and in `first`: where it is largest at the first one, among the points that both have. None where it is negligible
+    there (`NEGLIGIBLE`), or without such points."""
+    here = {tuple(key): k for k, key in enumerate(own.loads.place.tolist())}
+    then = _at(first, criterion, place)
+    shared = [(float(then[k]), k) for k, key in enumerate(map(tuple, first.loads.place.tolist())) if key in here]
+    if not shared:
+        return None
+    k = max(shared)[1]
+    return (here[tuple(first.loads.place[k].tolist())], k) if then[k] > 0.0 else None
+
+
 def changes(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str) -> tuple[float, float]:
-    """Ratios of a criterion to that at the first friction coefficient: of the largest values, and the median over
-    points that both have. NaN where there are none."""
-    now, then = (each.values[criterion][:, each.at(place)].max(axis=1, initial=0.0) for each in (own, first))
-    if not (len(now) and len(then) and then.max() > 0.0):
-        return math.nan, math.nan
+    """Ratios of a criterion to that at the first friction coefficient: at the point of the flank where that is largest
+    (`compared_point`), and the median over points that both have. NaN where the first one is negligible."""
+    now, then = _at(own, criterion, place), _at(first, criterion, place)
     known = {tuple(key): value for key, value in zip(first.loads.place.tolist(), then)}
     ratios = [
         value / known[key]
         for key, value in zip(map(tuple, own.loads.place.tolist()), now)
         if known.get(key, 0.0) > 0.0
     ]
-    return float(now.max() / then.max()), float(np.median(ratios)) if ratios else math.nan
+    point = compared_point(own, first, criterion, place)
+    at_point = math.nan if point is None else float(now[point[0]] / then[point[1]])
+    return at_point, float(np.median(ratios)) if ratios else math.nan
+
+
+def _at(own: FlankFatigue, criterion: Criterion, place: str) -> Floats:
+    """(n,) largest value below each point at a place; 0 for a stress below `NEGLIGIBLE`, as tension without friction:
+    what is left of it is the round-off of larger stresses."""
+    values = own.values[criterion][:, own.at(place)].max(axis=1, initial=0.0)
+    return np.where(values > NEGLIGIBLE * own.loads.peak, values, 0.0) if criterion.unit else values

@@ -34,6 +34,7 @@ from evolvent.scene.plain_text import cycles_label
 from evolvent.scene.scene import GEARS
 from evolvent.wear.results.report import WornPair, WornRun
 from evolvent.wear.results.vibration_figure import vibration_over_cycles
+from evolvent.wear.results.worn_lines import load_words
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -68,7 +69,8 @@ def vibration(study: WornRun) -> Figure:
     """Figure of the vibration at the operating speed over the cycles."""
     dynamics = study.scene.dynamics
     assert dynamics is not None and dynamics.operating_rpm is not None
-    return vibration_over_cycles(study.vibrations, dynamics.operating_rpm)
+    load = study.scene.load
+    return vibration_over_cycles(study.vibrations, dynamics.operating_rpm, f"{load.torque_Nm:g} N·m on the {load.on}")
 
 
 def wearing(study: WornRun) -> dict[Member, float]:
@@ -194,7 +196,7 @@ def force_on_tooth(study: WornRun) -> Figure:
     (first, last), (new, worn) = (c.force.max() for c in curves), (np.degrees(np.ptp(c.ends)) for c in curves)
     see = f"Unworn: a tooth is engaged over {new:.2f}° and carries at most {first:.0f} N"
     see += f"; after {cycles_label(study.pairs[-1].cycles)} cycles: {worn:.2f}°, {last:.0f} N."
-    title = "Force on a tooth, unworn and worn flanks"
+    title = f"Force on a tooth {load_words(study.scene)}, unworn and worn flanks"
     figure = _over_rotation(study, title, see, "normal force on a tooth [N]", _force)
     figure.axes[0].set(xlabel=TOOTH_ANGLE, ylim=(0.0, None))
     return figure
@@ -211,8 +213,8 @@ def transmission_error(study: WornRun) -> Figure:
     """Loaded transmission error minus its mean over a pitch at each report."""
     first, last = (pair.report().transmission_error_peak_to_peak_um for pair in (study.pairs[0], study.pairs[-1]))
     see = f"Peak to peak {first:.2f} µm unworn, {last:.2f} µm after {cycles_label(study.pairs[-1].cycles)} cycles."
-    label = "transmission error minus its mean [µm]"
-    return _over_rotation(study, "Transmission error, unworn and worn flanks", see, label, _error)
+    title = f"Transmission error {load_words(study.scene)}, unworn and worn flanks"
+    return _over_rotation(study, title, see, "transmission error minus its mean [µm]", _error)
 
 
 def _error(pair: WornPair) -> tuple[Floats, Floats]:

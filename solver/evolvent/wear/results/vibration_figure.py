@@ -14,11 +14,12 @@ from evolvent.scene.plain_text import cycles_label
 from evolvent_meshes.arrays import Floats
 
 
-def vibration_over_cycles(rows: Sequence[VibrationRow], speed: float) -> Figure:
-    """Transmission errors, mesh force and natural speed after each block. speed: of the pinion [r/min]."""
+def vibration_over_cycles(rows: Sequence[VibrationRow], speed: float, torque: str) -> Figure:
+    """Transmission errors, mesh force and natural speed after each block. speed: of the pinion [r/min]; torque: the
+    static one, in words."""
     first, last = rows[0], rows[-1]
     figure = sheet(
-        f"Vibration at {speed:.4g} r/min as the pair wears",
+        f"Vibration at {speed:.4g} r/min under {torque}, as the pair wears",
         f"Largest mesh force {1e-3 * first.largest_force_N:.2f} kN unworn, {1e-3 * last.largest_force_N:.2f} kN after "
         f"{cycles_label(last.cycles)} cycles, {1e-3 * min(row.largest_force_N for row in rows):.2f} kN at the least.",
         (10.0, 8.4),

@@ -8,19 +8,21 @@ from evolvent.run.strength.fatigue_lines import fatigue_lines
 
 HEAD = (
     "gear,friction,criterion,place,value,unit,value_error,depth_um,at_zone_end,near_friction_reversal,at_depth_limit,"
-    "change_at_points_percent\n"
+    "point_value,point_depth_um,change_percent,change_at_points_percent\n"
 )
-FIRST = """pinion,0.05,contact_pressure,surface,1000,MPa,30,0,False,False,False,0
-pinion,0.05,dang_van,surface,250,MPa,,0,False,False,False,0
-pinion,0.05,dang_van,0.02 half-widths,300,MPa,,3.456,False,False,False,0
+FIRST = """pinion,0.05,contact_pressure,surface,1000,MPa,30,0,False,False,False,1000,0,0,0
+pinion,0.05,maximum_shear,below,305,MPa,,87.8,True,False,False,305,87.8,0,0
+pinion,0.05,dang_van,surface,250,MPa,,0,False,False,False,250,0,0,0
+pinion,0.05,dang_van,0.02 half-widths,300,MPa,,3.456,False,False,False,300,3.456,0,0
 """
-MORE = """pinion,0.1,contact_pressure,surface,1010,MPa,30,0,True,False,False,-0.3
-pinion,0.1,maximum_shear,below,310,MPa,,54.3,True,True,True,1.5
-wheel,0.05,contact_pressure,surface,900,MPa,30,0,False,False,False,0
+MORE = """pinion,0.1,contact_pressure,surface,1010,MPa,30,0,True,False,False,990,0,-1.0,-0.3
+pinion,0.1,maximum_shear,below,310,MPa,,54.3,False,True,True,307,87.6,0.7,1.5
+pinion,0.1,dang_van,surface,270,MPa,,0,True,False,False,nan,nan,nan,nan
+wheel,0.05,contact_pressure,surface,900,MPa,30,0,False,False,False,900,0,0,0
 """
 
-NONE = """pinion,0.2,contact_pressure,surface,nan,MPa,nan,nan,False,False,False,nan
-pinion,0.2,dang_van,surface,nan,MPa,nan,nan,False,False,False,nan
+NONE = """pinion,0.2,contact_pressure,surface,nan,MPa,nan,nan,False,False,False,nan,nan,nan,nan
+pinion,0.2,dang_van,surface,nan,MPa,nan,nan,False,False,False,nan,nan,nan,nan
 """
 
 
@@ -29,19 +31,22 @@ def test_nothing_evaluated_is_said(tmp_path: Path) -> None:
     first coefficient alone, the others have no change."""
     (tmp_path / "fatigue.csv").write_text(HEAD + FIRST + NONE)
     _, line = fatigue_lines(tmp_path)
-    (tmp_path / "fatigue.csv").write_text(HEAD + NONE + "pinion,0.3,dang_van,surface,90,MPa,,0,False,False,False,nan\n")
+    (tmp_path / "fatigue.csv").write_text(HEAD + NONE + "pinion,0.3,dang_van,surface,90,MPa,,0,False,False,False,nan,nan,nan,nan\n")
     assert list(fatigue_lines(tmp_path))[1] == "μ = 0.3: Dang Van at the surface 90 MPa"
     assert "nothing evaluated: wanted contact between the tip-edge zones" in line and "nan" not in line
 
 
 def test_a_line_a_friction_coefficient(tmp_path: Path) -> None:
     """Of the pinion; an error that is not known is left out, and the change of the first coefficient, which is none.
+    The second one's largest shear lies 54.3 µm below another point than the first one's, 87.8 µm deep: both are printed
+    at the first one's point, with its flags. A change that is not known is left out, and the largest value stands.
     What does not hold is said, by name where it is not all."""
     (tmp_path / "fatigue.csv").write_text(HEAD + FIRST + MORE)
     assert list(fatigue_lines(tmp_path)) == [
-        "μ = 0.05: contact pressure 1000 ± 30 MPa, Dang Van at the surface 250 MPa, Dang Van 3.46 µm deep 300 MPa",
-        "μ = 0.1: contact pressure 1010 ± 30 MPa (-0.3 %), maximum shear stress 54.3 µm deep 310 MPa (+1.5 %); beside "
-        "the zone of a tip edge: all of these; where friction reverses, so that the stress history does not hold: "
-        "maximum shear stress 54.3 µm deep; no maximum over the depth, at the first or last one from 0.2 half-widths "
-        "down: maximum shear stress 54.3 µm deep",
+        "μ = 0.05: contact pressure 1000 ± 30 MPa, maximum shear stress 87.8 µm deep 305 MPa, Dang Van at the surface "
+        "250 MPa, Dang Van 3.46 µm deep 300 MPa; beside the zone of a tip edge: maximum shear stress 87.8 µm deep",
+        "μ = 0.1: contact pressure 990 ± 30 MPa (-1.0 % at this point, -0.3 % in the median), maximum shear stress 87.6 "
+        "µm deep 307 MPa (+0.7 % at this point, +1.5 % in the median), Dang Van at the surface 270 MPa; beside the zone "
+        "of a tip edge: maximum shear stress 87.6 µm deep, Dang Van at the surface; no maximum over the depth, at the "
+        "first or last one from 0.2 half-widths down: maximum shear stress 87.6 µm deep",
     ]

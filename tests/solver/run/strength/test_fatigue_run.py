@@ -88,7 +88,7 @@ def test_largest_pressure_is_that_of_a_run(out: Path, tmp_path: Path) -> None:
 
 
 def test_life_ratios_follow_the_changes(out: Path) -> None:
-    """Each is (1 + change)^−m of the largest values, with contact pressure's own exponent of 13.22 too."""
+    """Each is (1 + change)^−m at the point that is compared, with contact pressure's own exponent of 13.22 too."""
     lives = rows(out / "fatigue_life.csv")
     assert {float(row["friction"]) for row in lives} == {0.107}
     for row in lives:

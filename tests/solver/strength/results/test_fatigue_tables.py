@@ -88,13 +88,42 @@ def test_error_of_a_change() -> None:
     assert np.isnan(errors([FOUND[0], found[1]])).all()
 
 
-def test_changes_of_largest_values_and_at_points() -> None:
-    """Below: 510/500 of the largest; at the points 1.02, 0.978 and 0.95, of which the second is the median. A point
-    that one has alone does not count."""
+def test_changes_are_those_of_one_point_and_at_points() -> None:
+    """Below: 510/500 where it is largest first; at the points 1.02, 0.978 and 0.95, of which the second is the median.
+    A point that one has alone does not count."""
     assert changes(LESS, FIRST, ORTHOGONAL_SHEAR, BELOW) == pytest.approx((1.02, 440 / 450))
     fewer = flank([1000.0, 900.0], LOWER[:2], np.array([150.0, 144.0]))
     moved = replace(fewer, loads=replace(fewer.loads, place=fewer.loads.place + np.array([1, 0, 0])))
-    assert changes(moved, FIRST, ORTHOGONAL_SHEAR, BELOW)[1] == pytest.approx(np.median([510 / 450, 440 / 400]))
+    assert changes(moved, FIRST, ORTHOGONAL_SHEAR, BELOW) == pytest.approx((510 / 450, (510 / 450 + 440 / 400) / 2))
+
+
+def test_coefficients_are_compared_at_one_point() -> None:
+    """Problem: the largest shear jumps from the first point, 100 µm deep, to the second, 200 µm deep. Exact: the change
+    is that at the first point, where it is largest at the first coefficient, and the table says where that is; of the
+    largest values of both it would be +10 % instead of −10 %."""
+    jumped = flank([1000.0] * 3, [[80, 90, 410, 450], [72, 90, 440, 550], [64, 70, 380, 64]], 150.0 * np.ones(3))
+    found = [FOUND[0], FrictionFatigue(0.15, (jumped, jumped), math.nan)]
+    rows = {row.friction: row for row in fatigue_rows(PAIR, found)
+            if (row.gear, row.criterion, row.place) == ("pinion", ORTHOGONAL_SHEAR.name, BELOW)}  # fmt: skip
+    first, second = rows[0.2], rows[0.15]
+    assert (second.value, second.roll_distance_mm, second.depth_um) == (550.0, 0.0, 200.0)
+    assert (second.point_roll_distance_mm, second.point_value, second.point_depth_um) == (-2.0, 450.0, 100.0)
+    assert (first.point_roll_distance_mm, first.point_value, first.change_percent) == (-2.0, 500.0, 0.0)
+    assert second.change_percent == pytest.approx(-10.0)
+    lives = [row.life_ratio for row in life_rows(found, [4.0]) if (row.criterion, row.place, row.exponent) == (
+        ORTHOGONAL_SHEAR.name, BELOW, 4.0)]  # fmt: skip
+    assert lives == pytest.approx([0.9**-4] * 2)
+
+
+def test_what_is_negligible_at_the_first_coefficient_has_no_change() -> None:
+    """Problem: tension without friction at the first coefficient, of which round-off is left. Exact: it has neither
+    change nor life over it; with a friction of 0.15 its value stands."""
+    still = replace(FIRST, values={**FIRST.values, TENSION: FIRST.values[TENSION] * 1e-9})
+    found = [FrictionFatigue(0.0, (still, still), math.nan), FOUND[1]]
+    row = next(row for row in fatigue_rows(PAIR, found) if (row.friction, row.criterion) == (0.15, "tension"))
+    assert row.value == 150.0 and np.isnan([row.change_percent, row.change_at_points_percent, row.point_value]).all()
+    lives = [row for row in life_rows(found, [10.0]) if row.criterion == "tension" and row.place == SURFACE]
+    assert len(lives) == 2 and np.isnan([(row.life_ratio, row.life_ratio_at_points) for row in lives]).all()
 
 
 def test_lives() -> None:
@@ -111,7 +140,7 @@ def test_lives() -> None:
 
 
 def test_life_without_what_there_was(recwarn: pytest.WarningsRecorder) -> None:
-    """Tension that is gone, or next to, without friction: a life without end, and no error."""
+    """Tension that is gone, or next to, at the second coefficient alone: a life without end, and no error."""
     for left in (0.0, 1e-60):
         still = replace(LESS, values={**LESS.values, TENSION: LESS.values[TENSION] * left})
         rows = life_rows([FOUND[0], FrictionFatigue(0.0, (still, still), math.nan)], [10.0])

@@ -84,8 +84,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "scene.schema": ("meshes", "meshes.gears.modifications", "scene.schema.guesses"),
     "scene": (
         "meshes", "meshes.gears", "meshes.gears.form", "meshes.gears.modifications", "fem", "gears.problem",
-        "gears.meshing", "dynamics",
-        "scene.schema",
+        "gears.meshing", "dynamics", "scene.schema", "scene.schema.guesses",
     ),
     "scene.checking": (
         "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact", "gears.problem", "gears.meshing",

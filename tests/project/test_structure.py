@@ -17,7 +17,7 @@ import pytest
 from tests.project.rooms import ROOMS
 from tests.support.checkout import ROOT
 
-FILES, BELOW, LINES = 12, 9, 300
+FILES, BELOW, LINES = 16, 12, 300
 """Of a room at most: its files, the rooms directly below it, the lines of a file."""
 PACKAGES = ("solver/evolvent", "meshes/evolvent_meshes")
 TREES = ("solver/evolvent", "meshes/evolvent_meshes", "demos", "evidence", "tests")
@@ -176,7 +176,7 @@ def sizes(tree: Path) -> list[str]:
 
 @pytest.mark.parametrize("tree", TREES)
 def test_rooms_and_files_are_small(tree: str) -> None:
-    """At most 12 files a room, 9 rooms a level and 300 lines a file."""
+    """At most 16 files a room, 12 rooms a level and 300 lines a file."""
     assert sizes(ROOT / tree) == []
 
 

@@ -28,7 +28,7 @@ from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.schema.gears import GearSection, PairSection
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
 from evolvent.scene.schema.output import OutputSection, SkipSection
-from evolvent.scene.schema.section import PRINTABLE, TITLE, SceneSection, key
+from evolvent.scene.schema.section import SceneSection, key
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.schema.wear import WearSection
 from evolvent.scene.vibration_limits import PlannedVibration, impossible
@@ -48,7 +48,9 @@ class Scene(SceneSection):
     with one line per problem.
     """
 
-    title: str = key("a name for reports and pictures", TITLE, default="gear pair", max_length=200, pattern=PRINTABLE)
+    title: str = key(
+        "a name for reports and pictures", "a text of up to 200 characters", default="gear pair", max_length=200
+    )
     pair: PairSection
     pinion: GearSection
     wheel: GearSection

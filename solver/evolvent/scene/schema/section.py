@@ -7,11 +7,6 @@ from typing import Any, ClassVar
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
 
-TITLE = "a text of up to 200 characters, without control characters"
-PRINTABLE = r"^[^\x00-\x08\x0b-\x1f\x7f]*$"
-"""Texts that a picture and a table can show: with tabs and line ends, without other control characters."""
-
-
 def key(
     meaning: str,
     allowed: str,

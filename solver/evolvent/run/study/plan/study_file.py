@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, ValidationError, field_validator, m
 from evolvent.scene.scene import Scene, SceneError
 from evolvent.scene.scene_text import STUDY_FILE, require_kind, require_shallow, scene_text, toml_values
 from evolvent.scene.schema.errors import InputProblem, key_problem, problems_of, shown, validation_error
-from evolvent.scene.schema.section import PRINTABLE, TITLE, SceneSection, key
+from evolvent.scene.schema.section import SceneSection, key
 
 Computation = Literal["check", "run", "excitation", "dynamics", "strength", "wear"]
 COMPUTATIONS: tuple[Computation, ...] = get_args(Computation)
@@ -111,7 +111,8 @@ class StudyFile(SceneSection):
 
     kind: ClassVar[str] = "study"
     page: ClassVar[str] = "docs/studies.md"
-    title: str = key("a name for table and pictures", TITLE, default="study", max_length=200, pattern=PRINTABLE)  # fmt: skip
+    title: str = key("a name for table and pictures", "a text of up to 200 characters", default="study",
+                     max_length=200)  # fmt: skip
     scene: str = key("the base scene: a path relative to the folder of the study file", "the name of a scene file",
                      min_length=1, max_length=1000)  # fmt: skip
     compute: Computation = key(

@@ -85,8 +85,8 @@ class _Loader(ExtensionFileLoader):
 
 @contextmanager
 def _set(variables: Mapping[str, str]) -> Iterator[None]:
-    """Context with environment variables, but for those that the user has set; and with a home, without which Open MPI 5
-    does not start."""
+    """Context with environment variables, but for those that the user has set; and with a home, without which Open MPI
+    5 does not start."""
     wanted = {**variables, "HOME": _home()}
     added = {name: value for name, value in wanted.items() if name not in os.environ}
     os.environ.update(added)

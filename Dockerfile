@@ -10,7 +10,7 @@ RUN /opt/evolvent/packages/venv /opt/venv \
  && ln -s /opt/evolvent/packages/entry /usr/local/bin/evolvent
 
 # One BLAS thread a rank; ranks on this machine talk through shared memory only, without the ptrace right that containers
-# lack. Compiled code is kept in each user's home, or without one (docker run --user) in a folder of that user's in /tmp:
+# lack, and reach mpirun on loopback. Compiled code is kept in each user's home, or without one (docker run --user) in a folder of that user's in /tmp:
 # a folder that several users may write to would let one run code as another.
 ENV PATH=/usr/local/bin:/opt/venv/bin:/usr/bin:/bin \
     PYTHONDONTWRITEBYTECODE=1 \
@@ -21,6 +21,7 @@ ENV PATH=/usr/local/bin:/opt/venv/bin:/usr/bin:/bin \
     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
     OMPI_MCA_btl=self,vader \
     OMPI_MCA_btl_vader_single_copy_mechanism=none \
+    PMIX_MCA_ptl_tcp_if_include=lo \
     PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 
 WORKDIR /opt/evolvent

@@ -70,6 +70,11 @@ def atomic_file(path: Path, size: int) -> Iterator[Path]:
             part.unlink()
 
 
+def write_text(path: Path, text: str) -> Path:
+    """Write a text as UTF-8, as `write_bytes` does. Raises WriteError."""
+    return write_bytes(path, text.encode("utf-8"))
+
+
 @contextmanager
 def plain_name(path: Path, suffix: str) -> Iterator[Path]:
     """Context with another name of a file, by a link, in a folder without other files: for programs that take no name
@@ -78,11 +83,6 @@ def plain_name(path: Path, suffix: str) -> Iterator[Path]:
         alias = Path(folder) / f"file{suffix}"
         alias.symlink_to(path.resolve())
         yield alias
-
-
-def write_text(path: Path, text: str) -> Path:
-    """Write a text as UTF-8, as `write_bytes` does. Raises WriteError."""
-    return write_bytes(path, text.encode("utf-8"))
 
 
 @contextmanager

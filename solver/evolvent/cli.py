@@ -237,6 +237,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return flushed(_status(given))
     except BrokenPipeError:
         return flushed(Exit.PIPE_CLOSED)
+    except OSError as error:  # of help and version, which no command prints
+        return flushed(leave(str(error), Exit.FAILED).exit_code)
 
 
 def _status(given: list[str]) -> int:

@@ -52,7 +52,7 @@ def _has_home() -> bool:
 def no_options_files() -> Iterator[None]:
     """Context in which forms are compiled with the options that are given, and no others. Afterwards the libraries read
     files again, for other programs in this process."""
-    readers = [*_option_readers(), (_distribution(), "find_config_files", lambda self: [])]
+    readers: list[Reader] = [*_option_readers(), (_distribution(), "find_config_files", lambda self: [])]
     originals = [getattr(owner, name) for owner, name, _ in readers]
     for owner, name, instead in readers:
         setattr(owner, name, instead)

@@ -85,14 +85,22 @@ class _Loader(ExtensionFileLoader):
 
 @contextmanager
 def _set(variables: Mapping[str, str]) -> Iterator[None]:
-    """Context with environment variables, but for those that the user has set."""
-    added = {name: value for name, value in variables.items() if name not in os.environ}
+    """Context with environment variables, but for those that the user has set; and with a home, without which Open MPI
+    5 does not start."""
+    wanted = {**variables, "HOME": _home()}
+    added = {name: value for name, value in wanted.items() if name not in os.environ}
     os.environ.update(added)
     try:
         yield
     finally:
         for name in added:
             os.environ.pop(name, None)
+
+
+def _home() -> str:
+    """The user's home by the system's list, / where it has none."""
+    home = os.path.expanduser("~")
+    return home if os.path.isabs(home) else "/"
 
 
 def _require_temporary_folder() -> None:

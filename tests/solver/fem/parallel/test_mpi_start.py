@@ -39,10 +39,12 @@ def test_ranks_have_the_settings_of_mpirun(run_script: Run, monkeypatch: pytest.
 
 def test_launchers_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """A process without a launcher's variable is alone; with any of them it is a rank."""
+    mpirun, srun = ("OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"), ("PMIX_NAMESPACE", "PMI_SIZE", "PMI_FD")
+    assert {*mpirun, *srun} == set(LAUNCHERS)
     for name in LAUNCHERS:
         monkeypatch.delenv(name, raising=False)
     assert not launched()
-    for name in LAUNCHERS:
+    for name in (*mpirun, *srun):
         with monkeypatch.context() as patch:
             patch.setenv(name, "0")
             assert launched()

@@ -100,7 +100,7 @@ def _kill(program: subprocess.Popen[str], kind: str, seconds: float, outcome: Ou
     """Waits for a process of a kind, then for a time, and kills it where study and process still run."""
     begin = time.monotonic()
     while not (there := _of(kind, program.pid)) and time.monotonic() - begin < PATIENCE and program.poll() is None:
-        time.sleep(0.02)
+        time.sleep(0.1)
     with suppress(subprocess.TimeoutExpired):
         program.wait(seconds)
     if not there or not runs(there[0]) or program.poll() is not None:

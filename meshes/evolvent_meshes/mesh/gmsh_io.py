@@ -16,6 +16,7 @@ import numpy as np
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.files import atomic_file
 from evolvent_meshes.input_checks import shown
+from evolvent_meshes.mesh.distinct_elements import distinct, each_once, unique_cells
 from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, FACET_SHAPE, REVERSED_CELL, MeshData, MeshError
 
 ELEMENT_TYPES: dict[int, tuple[str, int]] = {
@@ -119,13 +120,13 @@ def from_gmsh() -> MeshData:
     shape, order = _single_type(volumes, dimension)
     facet_groups = {k: v for k, v in _groups(dimension - 1).items() if any(len(t) for t, _ in v.values())}
     _check_facets(facet_groups, (FACET_SHAPE[shape], order))
-    cell_nodes, indices = _unique_cells({k: v[_TYPE_NUMBERS[shape, order]] for k, v in volumes.items()})
+    cell_nodes, indices = unique_cells({k: v[_TYPE_NUMBERS[shape, order]] for k, v in volumes.items()})
     if not len(cell_nodes):
         raise MeshError("gmsh model: wanted cells in the physical groups, found none; generate the mesh first")
     used, cells = np.unique(cell_nodes, return_inverse=True)
     facet_type = _TYPE_NUMBERS[FACET_SHAPE[shape], order]
     facets = {
-        name: _renumbered(used, _each_once(group[facet_type][1]), name) for name, group in facet_groups.items()
+        name: _renumbered(used, each_once(group[facet_type][1]), name) for name, group in facet_groups.items()
     }
     points = _points(used)
     if dimension == 2 and np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2]):
@@ -204,25 +205,6 @@ def _check_facets(groups: dict[str, ElementGroup], wanted: tuple[str, int]) -> N
             )
 
 
-def _unique_cells(groups: dict[str, tuple[Ints, Ints]]) -> tuple[Ints, dict[str, Ints]]:
-    """Nodes of the cells by ascending tag, and the indices of each group's cells; a cell may be in several groups."""
-    tags, first = np.unique(np.concatenate([t for t, _ in groups.values()]), return_index=True)
-    nodes = np.concatenate([n for _, n in groups.values()])[first]
-    kept, number = _distinct(nodes)
-    return nodes[kept], {name: np.unique(number[np.searchsorted(tags, t)]) for name, (t, _) in groups.items()}
-
-
-def _distinct(elements: Ints) -> tuple[Ints, Ints]:
-    """Indices of the different elements (n, nodes), in their order, and the number of each one among these (n,)."""
-    _, first, which = np.unique(np.sort(elements, axis=1), axis=0, return_index=True, return_inverse=True)
-    kept = np.sort(first)
-    return kept, np.searchsorted(kept, first[which.ravel()])
-
-
-def _each_once(elements: Ints) -> Ints:
-    return np.asarray(elements[_distinct(elements)[0]])
-
-
 def _renumbered(used: Ints, nodes: Ints, name: str) -> Ints:
     index = np.minimum(np.searchsorted(used, nodes), len(used) - 1)
     if not np.array_equal(used[index], nodes):
@@ -288,7 +270,7 @@ def _distinct_facets(mesh: MeshData) -> tuple[Ints, dict[str, Ints]]:
     if not mesh.facets:
         return np.empty((0, 1), dtype=np.int64), {}
     every = np.concatenate(list(mesh.facets.values()))
-    kept, number = _distinct(every)
+    kept, number = distinct(every)
     ends = np.cumsum([len(f) for f in mesh.facets.values()])[:-1]
     return every[kept], dict(zip(mesh.facets, np.split(number, ends), strict=True))
 

@@ -21,7 +21,7 @@ from evolvent_meshes.arrays import Floats
 INNER = 0.2
 """Least part of an interval between a place in it and its ends."""
 
-STEEP = 3.0
+STEEP = 4.0
 """Ratio of the slopes on both sides from which on the steeper one is that of a jump."""
 ROUNDING = 1e-9
 """Of an interval: lines that cross at a point of the curve do so there, on whichever side rounding puts it."""

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from evidence import mutations
-from evidence.benchmarks.accuracy import transient_bar_costs, transient_bars
+from evidence.benchmarks.accuracy import face_load, transient_bar_costs, transient_bars
 from evidence.checkout import ROOT
 from evidence.pages import blow, outputs, promises, readme, tutorial
 from evidence.pages.papers import he, he_transient, yang, yang_fatigue, yang_transient, zhang
@@ -43,7 +43,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "transient.md": {"bars": transient_bars.said(docs), "costs": transient_bar_costs.said(docs)},
         docs / "transient_method.md": {"calculix": blow.table(docs), "smeared": he_transient.smeared(docs)},
         docs / "checks.md": {"repeats": repeats.said(docs)},
-        docs / "evidence.md": {"bars": bars},
+        docs / "evidence.md": {"bars": bars, "face-load": face_load.table(docs)},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "studies.md": {
             "keys": study_page.keys(), "figures": study_page.figures(), "measured": study_page.measured(docs),

@@ -1,4 +1,7 @@
-"""Elements with the same nodes are one element: MSH 2.2 writes an element once for each of its groups."""
+"""Elements that a mesh file has more than once: those with the same nodes are one.
+
+A cell or facet may be in several groups. MSH 4.1 has it once, by its tag; MSH 2.2 once for each group, with other tags.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,10 @@ from evolvent_meshes.arrays import Ints
 
 
 def unique_cells(groups: dict[str, tuple[Ints, Ints]]) -> tuple[Ints, dict[str, Ints]]:
-    """Nodes of the cells by ascending tag, and the indices of each group's cells; a cell may be in several groups."""
+    """Nodes of the cells by ascending tag, and the indices of each group's cells; a cell may be in several groups.
+
+    groups: tags (n,) and nodes (n, nodes) of each one's elements.
+    """
     tags, first = np.unique(np.concatenate([t for t, _ in groups.values()]), return_index=True)
     nodes = np.concatenate([n for _, n in groups.values()])[first]
     kept, number = distinct(nodes)
@@ -23,5 +29,5 @@ def distinct(elements: Ints) -> tuple[Ints, Ints]:
 
 
 def each_once(elements: Ints) -> Ints:
-    """The different elements (n, nodes), in their order."""
+    """The different elements (m, nodes) of these (n, nodes), in their order."""
     return np.asarray(elements[distinct(elements)[0]])

@@ -147,7 +147,8 @@ class FrictionRow:
     face_load_factor: float
     """K_Hβ of ISO 6336-1:2006, 7.2.2: largest normal force per unit of face width over its mean. The force is that of
     all tooth pairs in a layer of the mesh along the face, mean over the mesh cycle; at an end of the face it is lower
-    than the limit there. Of shafts and bearings only `pair.misalignment_um` is in it. 1 in plane strain."""
+    than the limit there. Of shafts and bearings only `pair.misalignment_um` is in it. 1 in plane strain. Why Method C
+    of the standard finds less of a misaligned pair: docs/evidence.md."""
     crossing_deg: float
     """Pinion rotation of the tooth at which its curve of maximum pressure crosses that of the smallest friction
     coefficient; null where it does not cross, or where the contact is less than two elements wide."""

@@ -69,8 +69,8 @@ class StrengthRow:
     tangent_angle_deg: float
     """Of the profile there to the tooth's centre line in the transverse section; of formulas 30, in the normal one."""
     load_share: float
-    """Part of the load on the tooth: that a formula takes, of finite elements that of the normal force at this rotation.
-    Deflected teeth share the load where rigid ones do not, at the outer point of single contact above all."""
+    """Part of the load on the tooth: that a formula takes; of finite elements that of the normal force at this
+    rotation. Deflected teeth share the load where rigid ones do not, at the outer point of single contact above all."""
     whole_load_MPa: float
     """The stress at this rotation with the whole load on this tooth, as the standard's stress has it: of formulas
     stress_MPa / load_share; of finite elements under the forces on this tooth alone, over load_share. The forces on its

@@ -126,6 +126,7 @@ def test_reported_words_name_what_was_meant(key: str) -> None:
         "material.grade_of_quality", "mesh.foo", "load.torque_J", "sweep.velvet", "wear.limit", "dynamics.limit",
         "strength.tolerance", "output.colour", "pinion.relief_um", "pinion.root_mm",
         "wheel.end_um", "pinion.length_mm", "pinion.tolerance", "pair.start", "xyz",
+        "transient.noise", "dynamics.velocity_of_sound_m",
     ],
 )  # fmt: skip
 def test_words_of_no_known_meaning_have_no_hint(key: str) -> None:

@@ -85,7 +85,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "scene": (
         "meshes", "meshes.gears", "meshes.gears.form", "meshes.gears.modifications", "fem", "gears.problem",
         "gears.meshing", "dynamics",
-        "scene.schema",
+        "scene.schema.guesses", "scene.schema",
     ),
     "scene.checking": (
         "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact", "gears.problem", "gears.meshing",

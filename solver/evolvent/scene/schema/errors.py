@@ -15,9 +15,9 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from evolvent.scene.schema.guesses.meant_key import meant_key, meant_section
 from evolvent.scene.schema.guesses.meant_value import expected, meant_value
+from evolvent.scene.schema.guesses.not_supported import not_supported
 from evolvent.scene.schema.guesses.terms import Meant
 from evolvent.scene.schema.guesses.units import unit_conversion
-from evolvent.scene.schema.not_supported import not_supported
 from evolvent.scene.schema.section import SceneSection
 from evolvent_meshes.errors import InputError
 

@@ -14,7 +14,7 @@ from evolvent.scene.schema.guesses.gear_terms import GEAR_TERMS
 from evolvent.scene.schema.guesses.other_terms import OTHER_TERMS, SECTION_TERMS, STUDY_TERMS
 from evolvent.scene.schema.guesses.terms import Term
 from evolvent.scene.schema.guesses.units import stem_of
-from tests.support.scene_effects import BARE
+from tests.support.running.scene_effects import BARE
 
 TERMS = (*GEAR_TERMS, *OTHER_TERMS)
 KEYS = keys_of(Scene)

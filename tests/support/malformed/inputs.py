@@ -97,7 +97,7 @@ RECORDS: dict[str, tuple[bytes, str, str]] = {
     "header alone": (RECORD_HEADER.encode(), "1 lines", "name quantity and unit"),
     "one line": ((RECORD_HEADER + "1000,1\n").encode(), "1", "at least 5 lines"),
     "time for distance": (RECORD.replace("sliding_distance_m", "time_s").encode(), "time_s", "sliding_distance_mm or"),
-    "falling distance": ("\n".join([RECORD_HEADER.strip(), *RECORD.splitlines()[:0:-1]]).encode(), "8000 m and", "sort"),
+    "falling distance": ("\n".join([RECORD_HEADER.strip(), *RECORD.splitlines()[:0:-1]]).encode(), "8000 m", "sort"),
     "same distance": ((RECORD_HEADER + "1000,1\n" * 8).encode(), "1000 m and then 1000 m", "sort the lines"),
     "no wear": ((RECORD_HEADER + "".join(f"{k},1\n" for k in range(8))).encode(), "0", "is the record's depth rising"),
     "depth called mm": ((RECORD_HEADER.replace("_um", "_mm") + "".join(f"{k},{k}\n" for k in range(9))).encode(),

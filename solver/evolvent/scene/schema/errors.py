@@ -15,9 +15,9 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from evolvent.scene.schema.guesses.meant_key import meant_key, meant_section
 from evolvent.scene.schema.guesses.meant_value import expected, meant_value
+from evolvent.scene.schema.guesses.not_supported import not_supported
 from evolvent.scene.schema.guesses.terms import Meant
 from evolvent.scene.schema.guesses.units import unit_conversion
-from evolvent.scene.schema.not_supported import not_supported
 from evolvent.scene.schema.section import SceneSection
 from evolvent_meshes.errors import InputError
 
@@ -212,7 +212,7 @@ def _meant(name: str, parents: list[str], model: type[SceneSection], is_section:
     here = [f"{parent}.{key}" if parent else key for key in inside.model_fields]
     sections = [key for key, field in zip(here, inside.model_fields.values()) if section_of(field)]
     if is_section:
-        found = meant_section(name, parent, sections, model.kind)
+        found = meant_section(name, parent, sections if model.kind == "scene" else here, model.kind)
     else:
         found = meant_key(name, parent, [key for key in here if key not in sections], keys_of(model), model.kind)
     if found is None and model.kind == "scene" and (words := not_supported(name, parent)):
@@ -226,7 +226,9 @@ def _not_a_section(path: list[str | int], value: Any, field: FieldInfo, section:
     if len(path) == 1 and get_origin(field.annotation) is tuple:
         allowed = f"one or more sections [[{name}]], each with the keys {keys}"
         return InputProblem(name, shown(value), allowed, f"write [[{name}]] in place of [{name}]")
-    return InputProblem(name, shown(value), f"a section with the keys {keys}", f"write [{name}] above its keys")
+    is_list = isinstance(value, list) and value and isinstance(value[0], dict)
+    remedy = f"write [{name}] in place of [[{name}]]" if is_list else f"write [{name}] above its keys"
+    return InputProblem(name, shown(value), f"a section with the keys {keys}", remedy)
 
 
 def _missing_section(path: list[str | int], section: type[BaseModel]) -> InputProblem:

@@ -12,7 +12,7 @@ from evolvent.scene.scene import Scene, SceneError, load_scene, scene_from_text
 from evolvent.scene.schema.dependence import dependents, effectless_keys
 from evolvent.scene.schema.errors import keys_of
 from tests.support.checkout import ROOT
-from tests.support.scene_effects import BARE, CHARTS, bare_scene, follows_the_same, other_value
+from tests.support.running.scene_effects import BARE, CHARTS, bare_scene, follows_the_same, other_value
 from tests.support.scene_texts import DEMOS
 
 NEEDS = {each.key: each for each in dependents(Scene)}

@@ -95,3 +95,21 @@ def test_no_toml(tmp_path: Path) -> None:
         load_study(written(tmp_path, "title = [\n"))
     with pytest.raises(SceneError, match=r"none\.toml: study file: found No such file"):
         load_study(tmp_path / "none.toml")
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "remedy"),
+    [
+        ("[figure]\nname = 'x_mm'\n", "figure", "write [[figure]] in place of [figure]"),
+        ("[figures]\nname = 'x_mm'\n", "figures", "a figure of your own is a section [[figure]]"),
+        ("[[figures]]\nname = 'x_mm'\n", "figures[0]", "a figure of your own is a section [[figure]]"),
+        ("[[latin_hypercube]]\nsamples = 5\n", "latin_hypercube", "write [latin_hypercube] in place of [[latin_"),
+        ("[parameters]\nload.torque_Nm = [1, 2]\n", "parameters", "did you mean grid?"),
+        ("[lhs]\nsamples = 5\n", "lhs", "did you mean latin_hypercube?"),
+    ],
+)  # fmt: skip
+def test_lists_of_sections_and_sections_are_told_apart(tmp_path: Path, text: str, key: str, remedy: str) -> None:
+    """One pair of brackets too few or too many, and other words for sections: the remedy is what has to be written."""
+    with pytest.raises(SceneError) as caught:
+        load_study(written(tmp_path, f"{TORQUES}{text}"))
+    assert [remedy in each.remedy for each in caught.value.problems if each.key == key] == [True], caught.value

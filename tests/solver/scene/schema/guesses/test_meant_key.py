@@ -14,7 +14,7 @@ from evolvent.scene.schema.guesses.gear_terms import GEAR_TERMS
 from evolvent.scene.schema.guesses.other_terms import OTHER_TERMS, SECTION_TERMS, STUDY_TERMS
 from evolvent.scene.schema.guesses.terms import Term
 from evolvent.scene.schema.guesses.units import stem_of
-from tests.support.scene_effects import BARE
+from tests.support.running.scene_effects import BARE
 
 TERMS = (*GEAR_TERMS, *OTHER_TERMS)
 KEYS = keys_of(Scene)
@@ -126,6 +126,7 @@ def test_reported_words_name_what_was_meant(key: str) -> None:
         "material.grade_of_quality", "mesh.foo", "load.torque_J", "sweep.velvet", "wear.limit", "dynamics.limit",
         "strength.tolerance", "output.colour", "pinion.relief_um", "pinion.root_mm",
         "wheel.end_um", "pinion.length_mm", "pinion.tolerance", "pair.start", "xyz",
+        "transient.noise", "dynamics.velocity_of_sound_m",
     ],
 )  # fmt: skip
 def test_words_of_no_known_meaning_have_no_hint(key: str) -> None:

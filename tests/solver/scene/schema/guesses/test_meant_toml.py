@@ -8,7 +8,7 @@ import pytest
 
 from evolvent.scene.scene import SceneError, scene_from_text
 from evolvent.scene.schema.guesses.meant_toml import value_written_otherwise
-from tests.support.scene_effects import BARE
+from tests.support.running.scene_effects import BARE
 
 WRITTEN = {
     "−5": ("U+2212", "write -5"), "–5.5": ("U+2013", "write -5.5"), ".5": ("point", "write 0.5"),

@@ -7,7 +7,7 @@ import pytest
 from evolvent.scene.scene import Scene, SceneError, scene_from_text
 from evolvent.scene.schema.errors import keys_of
 from evolvent.scene.schema.guesses.value_words import VALUE_WORDS
-from tests.support.scene_effects import BARE
+from tests.support.running.scene_effects import BARE
 
 
 def remedy(setting: str) -> str:

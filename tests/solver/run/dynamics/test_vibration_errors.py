@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -96,10 +97,10 @@ def test_positions_that_miss_a_harmonic() -> None:
 def test_a_sweep_that_fails_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """No steady state on the stiffer companion: no bars, and a sentence why; the natural speed has its own."""
 
-    def failing(pair: Drive, speeds: Floats) -> SpeedSweep:
+    def failing(pair: Drive, speeds: Floats, computed: Callable[[], None]) -> SpeedSweep:
         if pair.mean_stiffness > 1.01 * STIFFNESS:
             raise NoSteadyState("branch: wanted a next one, found none")
-        return sweep_at(pair, speeds)
+        return sweep_at(pair, speeds, computed)
 
     monkeypatch.setattr(module, "sweep_at", failing)
     error = wave(POSITIONS, 1)

@@ -85,8 +85,8 @@ def test_scale_holds_all_between_the_tip_edges(run: RunData) -> None:
 
 
 def test_pressures_over_relief_starts_are_left_out_of_the_scale() -> None:
-    """Problem: a spur pair with linear tip reliefs has ten times the pressure at nodes whose contact covers the start of
-    one. Exact: the scale of the maps ends where it ends without, and the envelope is blank there."""
+    """Problem: a spur pair with linear tip reliefs has ten times the pressure at nodes whose contact covers the start
+    of one. Exact: the scale of the maps ends where it ends without, and the envelope is blank there."""
     relief = ("pinion.tip_relief_um=20", "wheel.tip_relief_um=20")
     run = synthetic_run("sweep.positions=8", *relief, file="demos/he2022.toml")
 

@@ -196,4 +196,5 @@ def write_report(study: WornRun, folder: RunFolder) -> None:
         largest_block_error=max(row.error for row in study.rows),
         reports=tuple(pair.report() for pair in study.pairs),
     )
-    folder.write_text("wear.json", json.dumps(without_nan(asdict(report)), ensure_ascii=False, indent=1, allow_nan=False) + "\n")
+    text = json.dumps(without_nan(asdict(report)), ensure_ascii=False, indent=1, allow_nan=False)
+    folder.write_text("wear.json", text + "\n")

@@ -108,8 +108,8 @@ def over_hats(grid_: FlankGrid, depth: Callable[[Floats], Floats]) -> Floats:
 @pytest.mark.parametrize("spacing", [0.02, 0.05])
 def test_depth_at_the_pitch_point_is_a_mean_over_a_hat(spacing: float) -> None:
     """Problem: Hertzian ridges of constant load on a grid with a node at the pitch point. Depths at nodes are means
-    over their hat functions, as the volume wants. Exact: the depth of a passing Hertzian pressure, (K/H)(F/L) c 4b/3π there
-    with c the slope of the specific sliding over the arc, has h'' = 3h/b², so that the mean is (Δ/b)²/4 higher: 0.6 and
+    over their hat functions, as the volume wants. Exact: the depth of a passing Hertzian pressure, (K/H)(F/L) c 4b/3π
+    there with c the slope of the specific sliding over the arc, has h'' = 3h/b², so that the mean is (Δ/b)²/4 higher: 0.6 and
     3.7 %, within a tenth of that and 0.2 % of curvature."""
     pair = spur_scene().gear_pair()
     pitch = float(line_arc(pair, Member.PINION, np.zeros(1))[0])
@@ -156,8 +156,8 @@ def test_what_a_solved_pitch_adds_to_a_passing_hertzian_pressure() -> None:
     """Problem: He's pair at level standard, unworn. Depths in per cent over those of Hertz' pressure for the solution's
     loads passing at nominal speeds, both as means over hats. With nominal speeds they lie within 3.5 % about the pitch
     point, where the solved contact stands a fortieth of its half-width off the nominal line, and within 1.7 %
-    elsewhere; the mean error about the pitch point is below 1 %. With the elastic part of the sliding they are 0.5 to 4.5 % high
-    there: creep slides where rigid flanks roll. Ripple from node to node is below 0.6 %."""
+    elsewhere; the mean error about the pitch point is below 1 %. With the elastic part of the sliding they are 0.5 to
+    4.5 % high there: creep slides where rigid flanks roll. Ripple from node to node is below 0.6 %."""
     study, state = solved_pitch(40)
     pair, grid_, positions = study.model.pair, study.grids[0], [each.contact for each in state.positions]
     path = np.concatenate([each.roll_distance for each in positions])

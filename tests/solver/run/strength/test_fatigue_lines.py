@@ -49,6 +49,6 @@ def test_a_line_a_friction_coefficient(tmp_path: Path) -> None:
         "250 MPa, Dang Van 3.46 µm deep 300 MPa; beside the zone of a tip edge: maximum shear stress 87.8 µm deep",
         "μ = 0.1: contact pressure 990 ± 30 MPa (-1.0 % at this point, -0.3 % in the median), maximum shear stress "
         "87.6 µm deep 307 MPa (+0.7 % at this point, +1.5 % in the median), Dang Van at the surface 270 MPa; beside "
-        "the zone of a tip edge: maximum shear stress 87.6 µm deep, Dang Van at the surface; no maximum over the depth, "
-        "at the first or last one from 0.2 half-widths down: maximum shear stress 87.6 µm deep",
+        "the zone of a tip edge: maximum shear stress 87.6 µm deep, Dang Van at the surface; no maximum over the "
+        "depth, at the first or last one from 0.2 half-widths down: maximum shear stress 87.6 µm deep",
     ]

@@ -109,8 +109,8 @@ def over_hats(grid_: FlankGrid, depth: Callable[[Floats], Floats]) -> Floats:
 def test_depth_at_the_pitch_point_is_a_mean_over_a_hat(spacing: float) -> None:
     """Problem: Hertzian ridges of constant load on a grid with a node at the pitch point. Depths at nodes are means
     over their hat functions, as the volume wants. Exact: the depth of a passing Hertzian pressure, (K/H)(F/L) c 4b/3π
-    there with c the slope of the specific sliding over the arc, has h'' = 3h/b², so that the mean is (Δ/b)²/4 higher: 0.6 and
-    3.7 %, within a tenth of that and 0.2 % of curvature."""
+    there with c the slope of the specific sliding over the arc, has h'' = 3h/b², so that the mean is (Δ/b)²/4 higher:
+    0.6 and 3.7 %, within a tenth of that and 0.2 % of curvature."""
     pair = spur_scene().gear_pair()
     pitch = float(line_arc(pair, Member.PINION, np.zeros(1))[0])
     arcs = pitch + spacing * np.arange(-40, 41)

@@ -65,8 +65,11 @@ FILES = (
     (".evolvent.lock", "there while a run goes on: one run per folder"),
     ("wear.csv", "a wear study: one line per block of cycles"),
     ("wear.json", "a wear study: the values at each report"),
-    ("worn_*", "a wear study: the pair after so many cycles, a folder with its tables, its scene, both flanks as "
-      "charts and `results/`; pictures once `evolvent plot` draws them, no run.log, no fields"),
+    (
+        "worn_*",
+        "a wear study: the pair after so many cycles, a folder with its tables, its scene, both flanks as "
+        "charts and `results/`; pictures once `evolvent plot` draws them, no run.log, no fields",
+    ),
     ("load_*", "`evolvent loads`: the run under one torque, a folder with all of the above"),
     ("loads.csv", "`evolvent loads`: one line per load and friction coefficient"),
     ("excitation.csv", "excitation under each torque: `evolvent excitation`, `dynamics`, `run` at an operating speed"),
@@ -110,6 +113,7 @@ ARRAYS = (
     ("roll_distance_mm", "distance from the pitch point along the path of contact, negative towards the pinion's root"),
     ("pressure_MPa (mu=...)", "contact pressure, NaN where a tip's edge bears; on the wheel the pinion's"),
     ("edge_pressure_MPa (mu=...)", "pressure where a tip's edge bears, where it is singular; 0 elsewhere"),
+    ("kink_pressure_MPa (mu=...)", "pressure where the contact covers the start of a linear relief; 0 elsewhere"),
     ("traction_MPa (mu=...)", "what the wheel presses on the pinion with, a vector; 0 on the wheel"),
     ("slip_mm_per_rad (mu=...)", "sliding of the pinion over the wheel, a vector; 0 on the wheel"),
     ("sticks (mu=...)", "1 where the flanks stick, 0 where they slide or do not touch"),

@@ -206,9 +206,7 @@ def _with_cuts(run: RunData, changed: Callable[[Slices], Slices]) -> RunData:
     """The run with other slices at all positions."""
     return replace(
         run,
-        positions=tuple(
-            tuple(replace(solved, cut=changed(solved.cut)) for solved in each) for each in run.positions
-        ),
+        positions=tuple(tuple(replace(solved, cut=changed(solved.cut)) for solved in each) for each in run.positions),
     )
 
 

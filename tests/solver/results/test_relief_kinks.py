@@ -133,7 +133,9 @@ def test_tables_say_which_pressures_lie_over_a_kink(relieved: list[RunData]) -> 
     curve of the engagement has gaps where pressures lie over kinks, and its line ends there."""
     run = relieved[0]
     for row in position_rows(run):
-        away, over = ([getattr(tooth, name) for tooth in row.teeth] for name in ("max_pressure_MPa", "kink_pressure_MPa"))
+        away, over = (
+            [getattr(tooth, name) for tooth in row.teeth] for name in ("max_pressure_MPa", "kink_pressure_MPa")
+        )
         assert [bool(np.isfinite(each)) for each in away] == [each == 0.0 for each in over]
         assert row.kink_pressure_MPa == max(over)
         np.testing.assert_equal(row.max_pressure_MPa, np.fmax.reduce(away))

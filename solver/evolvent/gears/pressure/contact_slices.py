@@ -57,8 +57,8 @@ class Slices:
     """(n,) bool, whether the slice's contact covers the start of a linear tip or root relief of a spur pair, see
     `relief_starts`."""
     narrow: Bools
-    """(n,) bool, whether the contact of a spur pair is narrower by Hertz than `FEWEST_FITTED` facets of either flank. Its
-    line load is accurate, its fitted peak is not. On helical lines neighbouring slices make up for it."""
+    """(n,) bool, whether the contact of a spur pair is by Hertz narrower than `FEWEST_FITTED` facets of either flank.
+    Its line load is accurate, its fitted peak is not. On helical lines neighbouring slices make up for it."""
 
     @staticmethod
     def joined(parts: Sequence[Slices]) -> Slices:
@@ -124,7 +124,9 @@ def slices(
     z = 0.5 * (edges[:-1] + edges[1:])[layer]
     pair = result.stand.pair
     facet = np.column_stack([flank.lengths_at(ρ) for flank, ρ in zip(flanks, pair.curvature_radii(ξ))])
-    cut = Slices(tooth, z, ξ, width, load, peak, largest, half, hertz, radius, edge, facet, *np.zeros((2, len(ξ)), dtype=bool))
+    cut = Slices(
+        tooth, z, ξ, width, load, peak, largest, half, hertz, radius, edge, facet, *np.zeros((2, len(ξ)), dtype=bool)
+    )
     if pair.pinion.base_helix_angle != 0.0:
         return cut
     narrow = 2.0 * cut.contact_width.half_width < FEWEST_FITTED * facet.max(axis=1)

@@ -43,7 +43,7 @@ class ReliefStart:
     """Derivative of ξ by the flank's arc length."""
 
     def reach(self, contact: ContactWidth, side: int) -> Floats:
-        """Distance in ξ (n,) [mm] up to which contacts cover the kink. side: 1 on the relieved side, −1 on the other."""
+        """Distance in ξ (n,) [mm] up to which contacts cover the kink. side: 1 the relieved side, −1 the other one."""
         turned = contact.radius * self.angle if side > 0 else 0.0
         return np.asarray(self.roll * (contact.half_width + turned + contact.facet[:, self.member]))
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 

@@ -81,7 +81,7 @@ class PitchSolution:
 
     @property
     def max_pressure(self) -> Floats:
-        """Largest fitted peak pressure between the tip-edge zones and away from the starts of linear reliefs (k,) [MPa],
+        """Largest fitted peak pressure between the tip-edge zones and away from starts of linear reliefs (k,) [MPa],
         `max_pressure_MPa` of positions.csv; NaN where there is none."""
         return self.pressure.at_positions
 

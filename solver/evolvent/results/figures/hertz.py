@@ -12,7 +12,18 @@ from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.results.archive.error_bar_data import plus_minus
-from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, OVER_KINK, PINION, dot_size, foot, note, sheet
+from evolvent.results.drawing.style import (
+    AT_ZONE_END,
+    FAINT,
+    HOLLOW,
+    INK,
+    OVER_KINK,
+    PINION,
+    dot_size,
+    foot,
+    note,
+    sheet,
+)
 from evolvent.results.drawing.teeth import compares_yang
 from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import cells_across, few_cells_across

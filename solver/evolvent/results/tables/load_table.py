@@ -32,8 +32,8 @@ class LoadRow:
     transmission_error_peak_to_peak_um_error: float
     """Its estimated error, as in summary.json; NaN where the run has none."""
     max_pressure_MPa: float
-    """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones and away from the starts
-    of linear reliefs, as in summary.json."""
+    """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones and away from the
+    starts of linear reliefs, as in summary.json."""
     max_pressure_MPa_error: float
     """Its estimated error."""
     max_pressure_at_zone_end: bool

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
 from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import MeshFacts

@@ -24,8 +24,8 @@ from evolvent_meshes.arrays import Floats, Ints
 
 @dataclass(frozen=True)
 class FlankLoads:
-    """The n slices of all positions of a pitch that are loaded between the tip-edge zones, away from the starts of linear
-    reliefs."""
+    """The n slices of all positions of a pitch that are loaded between the tip-edge zones, away from the starts of
+    linear reliefs."""
 
     place: Ints
     """(n, 3) position in the pitch, tooth pair and layer of the face: the same points at other friction coefficients
@@ -61,7 +61,8 @@ class LoadedPosition:
     """(m,) z of the pinion flank's nodes [mm]."""
 
     def loads(self, inner: tuple[float, float]) -> FlankLoads:
-        """Of the slices between the tip-edge zones, away from the starts of linear reliefs. inner: see `RunData.inner_path`."""
+        """Of the slices between the tip-edge zones, away from the starts of linear reliefs. inner: see
+        `RunData.inner_path`."""
         chosen = self._chosen(inner)
         cut, peak = self.cut, pooled_peaks(self.cut)[chosen]
         half = 2.0 * cut.line_load[chosen] / (np.pi * peak)

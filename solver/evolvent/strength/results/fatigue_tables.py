@@ -116,7 +116,9 @@ def _largest(
     head = member.label, each.friction, criterion.name, place
     if not len(own.loads.peak):
         no = math.nan
-        return FatigueRow(*head, no, criterion.unit, *[no] * 6, False, False, False, *[no] * 7)
+        return FatigueRow(
+            *head, no, criterion.unit, no, no, no, no, no, no, False, False, False, no, no, no, no, no, no, no
+        )  # fmt: skip
     columns = np.flatnonzero(own.at(place))
     values = own.values[criterion][:, columns]
     k, m = np.unravel_index(int(np.argmax(values)), values.shape)

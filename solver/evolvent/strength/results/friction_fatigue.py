@@ -57,9 +57,7 @@ def changes(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place:
     now, then = _at(own, criterion, place), _at(first, criterion, place)
     known = {tuple(key): value for key, value in zip(first.loads.place.tolist(), then)}
     ratios = [
-        value / known[key]
-        for key, value in zip(map(tuple, own.loads.place.tolist()), now)
-        if known.get(key, 0.0) > 0.0
+        value / known[key] for key, value in zip(map(tuple, own.loads.place.tolist()), now) if known.get(key, 0.0) > 0.0
     ]
     point = compared_point(own, first, criterion, place)
     at_point = math.nan if point is None else float(now[point[0]] / then[point[1]])

@@ -16,6 +16,7 @@ from evolvent.results.archive.archive import Archive, ArchiveError
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.results.tables.tables import without_nan
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow
@@ -112,7 +113,8 @@ class WornPair:
         row = friction_rows(self.run)[0]
         return PairReport(
             self.cycles, self._gear(Member.PINION), self._gear(Member.WHEEL), row.max_pressure_MPa,
-            row.kink_pressure_MPa, row.transmission_error_peak_to_peak_um, row.mesh_stiffness_N_per_mm_um, row.loss_percent, row.balance_error,
+            row.kink_pressure_MPa, row.transmission_error_peak_to_peak_um, row.mesh_stiffness_N_per_mm_um,
+            row.loss_percent, row.balance_error,
         )  # fmt: skip
 
     def _gear(self, gear: Member) -> GearReport:
@@ -194,4 +196,5 @@ def write_report(study: WornRun, folder: RunFolder) -> None:
         largest_block_error=max(row.error for row in study.rows),
         reports=tuple(pair.report() for pair in study.pairs),
     )
-    folder.write_text("wear.json", json.dumps(asdict(report), ensure_ascii=False, indent=1) + "\n")
+    text = json.dumps(without_nan(asdict(report)), ensure_ascii=False, indent=1, allow_nan=False)
+    folder.write_text("wear.json", text + "\n")

@@ -72,6 +72,25 @@ def test_tip_edges_do_not_swamp_the_scale(run: RunData) -> None:
         assert np.isfinite(pressure[arrays["gear"] == 0]).mean() > 0.98
 
 
+def test_pressures_over_relief_starts_stand_apart() -> None:
+    """Problem: a spur pair with linear tip reliefs, whose contact covers the start of one at some positions and of none
+    at others. Exact: teeth over a start have their pressures in kink_pressure_MPa alone, all others in pressure_MPa."""
+    relief = ("pinion.tip_relief_um=20", "wheel.tip_relief_um=20")
+    run = synthetic_run("sweep.positions=8", *relief, file="demos/he2022.toml")
+    covers = 0
+    for (solved,) in run.positions:
+        _, arrays = flank_fields(run, (solved,))
+        pressure, kink = arrays["pressure_MPa (mu=0)"], arrays["kink_pressure_MPa (mu=0)"]
+        for tooth in solved.teeth:
+            own, (over,) = arrays["tooth"] == tooth.tooth, solved.cut.kink[solved.cut.tooth == tooth.tooth]
+            if tooth.edge_pressure > 0.0:
+                continue
+            assert (kink[own].max() > 300.0) == over and (np.nanmax(pressure[own]) > 300.0) == (not over)
+            assert (tooth.kink_pressure > 0.0) == over
+            covers += over
+    assert 0 < covers < 8
+
+
 def test_nodes_stand_where_the_solver_had_them(run: RunData, tmp_path: Path) -> None:
     """Exact: a pinion flank node under pressure lies within the contact's half-width (0.2 mm at most) of the plane of
     action, in which all contact lines stand in space: distance (x − r_b1 n)·n with n along the line of action."""

@@ -13,10 +13,11 @@ from PIL import Image
 
 from evidence.pages.tutorial import small
 from evolvent.gears.pressure.contact_slices import on_tip_edge
+from evolvent.gears.pressure.relief_starts import relief_starts
 from evolvent.results.drawing.style import ABOVE, OVER, png, styled
 from evolvent.results.engagement import largest_peak
 from evolvent.results.figures.flank import envelope, pressure_map, pressure_top
-from evolvent.results.run_data import RunData
+from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent_meshes.arrays import Floats
 from tests.support.synthetic_run import steep_run, synthetic_run
@@ -81,6 +82,25 @@ def test_scale_holds_all_between_the_tip_edges(run: RunData) -> None:
         colours = np.asarray(small(picture).convert("RGB")).reshape(-1, 3).astype(float)
     assert np.abs(colours - 255.0 * np.array(to_rgb(OVER))).max(axis=1).min() < 4.0
     assert (colours[0] == 255.0).all()
+
+
+def test_pressures_over_relief_starts_are_left_out_of_the_scale() -> None:
+    """Problem: a spur pair with linear tip reliefs has ten times the pressure at nodes whose contact covers the start
+    of one. Exact: the scale of the maps ends where it ends without, and the envelope is blank there."""
+    relief = ("pinion.tip_relief_um=20", "wheel.tip_relief_um=20")
+    run = synthetic_run("sweep.positions=8", *relief, file="demos/he2022.toml")
+
+    def sharp(solved: SolvedPosition) -> SolvedPosition:
+        result, cut = solved.result, solved.cut
+        over = np.isin(result.tooth, cut.tooth[cut.kink])
+        return replace(solved, result=replace(result, traction=np.where(over[:, None], 10.0, 1.0) * result.traction))
+
+    sharpened = replace(run, positions=tuple((sharp(solved),) for (solved,) in run.positions))
+    assert pressure_top(sharpened, 0) == pressure_top(run, 0)
+    starts = np.array([start.roll_distance for start in relief_starts(run.pair)])
+    assert len(starts) == 2 and any(solved.cut.kink.any() for (solved,) in run.positions)
+    finer = synthetic_run("sweep.positions=40", *relief, file="demos/he2022.toml")
+    assert np.isnan(envelope(finer, 0, starts)[1]).all() and np.isfinite(envelope(finer, 0, np.zeros(1))[1]).all()
 
 
 def test_tip_edges_do_not_swamp_the_scale(run: RunData) -> None:

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
-from evolvent.results.drawing.style import AT_ZONE_END, styled
-from evolvent.results.engagement import sign_changes
+from evolvent.results.drawing.style import AT_ZONE_END, OVER_KINK, styled
+from evolvent.results.engagement import engagement, sign_changes
 from evolvent.results.figures.hertz import hertz_comparison
 from evolvent.results.figures.stress import engagement_stress
 from evolvent.results.figures.trend import friction_trend
@@ -92,6 +92,23 @@ def test_largest_pressure_beside_hertz_has_its_error_bar(steep: RunData) -> None
             [largest - BAR, largest + BAR]
         )
     assert any(f"{largest:.0f} ± {BAR:.0f}" == text.get_text() for text in beside.texts)
+
+
+def test_pressures_over_relief_starts_are_marked_apart() -> None:
+    """Problem: a spur pair with linear tip reliefs. Exact: 03 has the largest pressure in its line, with gaps, crosses
+    where the contact covers the start of a relief, their name in the legend and the pressure of a sharp kink in words;
+    10 has the same slices apart."""
+    relief = ("pinion.tip_relief_um=20", "wheel.tip_relief_um=20")
+    run = synthetic_run("sweep.positions=24", *relief, file="demos/he2022.toml")
+    (row,), curve = friction_rows(run), engagement(run, 0)
+    with styled():
+        over_turn, hertz = engagement_stress(run), hertz_comparison(run)
+    known = curve.kink_pressure[np.isfinite(curve.kink_pressure)]
+    (crosses,) = [line for line in over_turn.axes[0].lines if line.get_marker() == "x"]
+    np.testing.assert_array_equal(np.asarray(crosses.get_ydata())[np.isfinite(curve.kink_pressure)], known)
+    assert OVER_KINK in legend_of(over_turn) and f"computed, {OVER_KINK}" in legend_of(hertz)
+    assert any(f"{row.kink_pressure_MPa:.0f} MPa (closed form)" in text.get_text() for text in over_turn.texts)
+    assert row.max_pressure_MPa == curve.peak.pressure < row.kink_pressure_MPa
 
 
 def test_crossing_is_not_given_on_few_cells() -> None:

@@ -31,7 +31,9 @@ def test_nothing_evaluated_is_said(tmp_path: Path) -> None:
     first coefficient alone, the others have no change."""
     (tmp_path / "fatigue.csv").write_text(HEAD + FIRST + NONE)
     _, line = fatigue_lines(tmp_path)
-    (tmp_path / "fatigue.csv").write_text(HEAD + NONE + "pinion,0.3,dang_van,surface,90,MPa,,0,False,False,False,nan,nan,nan,nan\n")
+    (tmp_path / "fatigue.csv").write_text(
+        HEAD + NONE + "pinion,0.3,dang_van,surface,90,MPa,,0,False,False,False,nan,nan,nan,nan\n"
+    )
     assert list(fatigue_lines(tmp_path))[1] == "μ = 0.3: Dang Van at the surface 90 MPa"
     assert "nothing evaluated: wanted contact between the tip-edge zones" in line and "nan" not in line
 
@@ -45,8 +47,8 @@ def test_a_line_a_friction_coefficient(tmp_path: Path) -> None:
     assert list(fatigue_lines(tmp_path)) == [
         "μ = 0.05: contact pressure 1000 ± 30 MPa, maximum shear stress 87.8 µm deep 305 MPa, Dang Van at the surface "
         "250 MPa, Dang Van 3.46 µm deep 300 MPa; beside the zone of a tip edge: maximum shear stress 87.8 µm deep",
-        "μ = 0.1: contact pressure 990 ± 30 MPa (-1.0 % at this point, -0.3 % in the median), maximum shear stress 87.6 "
-        "µm deep 307 MPa (+0.7 % at this point, +1.5 % in the median), Dang Van at the surface 270 MPa; beside the zone "
-        "of a tip edge: maximum shear stress 87.6 µm deep, Dang Van at the surface; no maximum over the depth, at the "
-        "first or last one from 0.2 half-widths down: maximum shear stress 87.6 µm deep",
+        "μ = 0.1: contact pressure 990 ± 30 MPa (-1.0 % at this point, -0.3 % in the median), maximum shear stress "
+        "87.6 µm deep 307 MPa (+0.7 % at this point, +1.5 % in the median), Dang Van at the surface 270 MPa; beside "
+        "the zone of a tip edge: maximum shear stress 87.6 µm deep, Dang Van at the surface; no maximum over the "
+        "depth, at the first or last one from 0.2 half-widths down: maximum shear stress 87.6 µm deep",
     ]

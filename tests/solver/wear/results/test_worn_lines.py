@@ -15,8 +15,8 @@ WEAR = ("wear.cycles=4e5", "wear.pinion_mm2_per_N=1e-10", "wear.wheel_mm2_per_N=
 
 
 def test_a_wear_study_ends_with_the_worn_pair(tmp_path: Path) -> None:
-    """Problem: a study of 400,000 cycles with a report halfway, whose pinion wears. Exact: the last lines have the load,
-    the unworn pair, and of the last report largest depth, pressure and transmission error, by their names."""
+    """Problem: a study of 400,000 cycles with a report halfway, whose pinion wears. Exact: the last lines have the
+    load, the unworn pair, and of the last report largest depth, pressure and transmission error, by their names."""
     row = {"friction": 0.0, "max_pressure_MPa": 600.0, "estimated_error": None}
     (tmp_path / "summary.json").write_text(json.dumps({"frictions": [row]}))
     gear = {"deepest_um": 1.234, "at_diameter_mm": 147.0}

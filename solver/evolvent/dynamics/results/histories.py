@@ -88,7 +88,7 @@ def motions(drive: Drive, swept: SpeedSweep, speeds: Sequence[float]) -> list[Mo
 def history_rows(found: Iterable[Motion]) -> Iterator[HistoryRow]:
     """One motion after the other."""
     for motion in found:
-        columns = (motion.over(name) for name in ("displacement", "error", "velocity", "force", "side"))
+        columns = (motion.over(name) for name in ("transmission_error", "error", "velocity", "force", "side"))
         for phase, s, e, velocity, force, side in zip(motion.phases, *columns):
             yield HistoryRow(
                 motion.speed, motion.way, float(phase), 1e3 * float(phase) * motion.period, UM * float(s),

@@ -48,12 +48,13 @@ from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
 from evolvent.run.dynamics.vibration_errors import errors_over_speed, vibration_of
 from evolvent.run.dynamics.written_files import OF_DYNAMICS, PORTRAITS, VIBRATION_PICTURE, WATERFALL
 from evolvent.run.progress import OUTPUT, Progress
+from evolvent.run.start import with_bodies
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
 
-SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
+BODIES, SPEEDS, SPEEDS_AGAIN, MAP = "gear bodies", "speeds", "speeds, error bars", "torque map"
 
 
 def run_dynamics(
@@ -75,11 +76,14 @@ def run_dynamics(
     section = scene.dynamics or DynamicsSection()
     loads = scene_torques(scene, section.torque_percents)
     fine, coarse = kept_positions(loads, out, resume)
-    check_room(loads.problem, scene.sweep.positions, drive_settings(loads.problem.pair, section))
+    settings = drive_settings(loads.problem.pair, section)
+    check_room(loads.problem, scene.sweep.positions, settings)
     with writing_results(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
+        progress.stage(BODIES)
+        settings = with_bodies(settings, loads.problem, section, comm)
         excitation = computed_excitation(loads, comm, progress, fine, prepare)
         companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
-        written = partial(_written, excitation, companion, loads, section, out, progress)
+        written = partial(_written, excitation, companion, loads, section, settings, out, progress)
         return said + loads.warnings + on_first(comm, written)
 
 
@@ -92,15 +96,14 @@ def accuracy(section: DynamicsSection) -> Accuracy:
 
 
 def _written(
-    excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques, section: DynamicsSection, out: Path,
-    progress: Progress,
+    excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques, section: DynamicsSection,
+    settings: DriveSettings, out: Path, progress: Progress,
 ) -> list[str]:  # fmt: skip
     """Sweeps the speeds and writes everything, in place of what an earlier call has written. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), loads.problem
-    settings = drive_settings(first.pair, section)
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
-    iso = method_b(first.pair, vibrating.model.mass, vibrating.model.load, accuracy(section), moduli)
+    iso = method_b(first.pair, vibrating.equivalent_mass, vibrating.model.load, accuracy(section), moduli)
     progress.stage(SPEEDS)
     speeds = sweep_list(vibrating.natural_speed, section)
     swept = sweep_at(vibrating, speeds)
@@ -176,6 +179,12 @@ def _pictures(
 def _warnings(vibrating: Drive, settings: DriveSettings, known: DriveSummary) -> list[str]:
     """What a reader of the results has to know."""
     found, deflection = [], vibrating.model.load / vibrating.mean_stiffness
+    if settings.bodies is None:
+        found.append(
+            'dynamics.bodies = "rigid": all inertia is at the bores, behind what gives way between bore and mesh, so that '
+            "natural speed, resonances and jumps lie too low, the more the smaller the bores "
+            '(docs/dynamics.md, gear bodies); "elastic" has the inertia where it is'
+        )
     if settings.backlash < deflection:
         found.append(
             f"dynamics.backlash_um: found {known.backlash_um:.3g} µm, less than the static deflection of "

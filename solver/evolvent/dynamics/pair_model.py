@@ -76,11 +76,18 @@ class Drive:
     which hold them in statics. That of `mean_stiffness` where bodies are rigid."""
     equivalent_mass: float
     """m_e of rigid bodies [t]."""
+    body_frequency: float
+    """Lowest frequency [Hz] of the bodies' own vibration on the mesh, which one degree of freedom leaves out; infinite
+    for rigid bodies."""
 
     @property
     def natural_speed(self) -> float:
         """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness [r/min]."""
         return self._speed(self.moving_stiffness / self.model.mass)
+
+    def body_speed(self, harmonic: int) -> float:
+        """Of the pinion, at which this mesh harmonic has that frequency [r/min]."""
+        return 60.0 * self.body_frequency / (harmonic * self.teeth)
 
     @property
     def rigid_natural_speed(self) -> float:
@@ -108,7 +115,8 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
         body.mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
         settings.damped_apart, settings.ground_damping_ratio * critical, body.stiffer * load, body.bore,
     )  # fmt: skip
-    return Drive(model, mean, pair.pinion.z, settings, moving, equivalent_mass(pair, settings.inertias))
+    rigid = equivalent_mass(pair, settings.inertias)
+    return Drive(model, mean, pair.pinion.z, settings, moving, rigid, body.next_frequency / (2.0 * math.pi))
 
 
 def _mean(mesh: MeshExcitation, load: float, settings: DriveSettings) -> float:
@@ -120,7 +128,7 @@ def _mean(mesh: MeshExcitation, load: float, settings: DriveSettings) -> float:
 def _body(pair: GearPair, stiffness: float, settings: DriveSettings) -> OneDegree:
     """Both bodies on a mesh of this mean stiffness [N/mm]. Raises TooSoftBodies."""
     if settings.bodies is None:
-        return OneDegree(equivalent_mass(pair, settings.inertias), 0.0, 0.0)
+        return OneDegree(equivalent_mass(pair, settings.inertias), 0.0, 0.0, math.inf)
     pinion, wheel = (gear.with_inertia(moment) for gear, moment in zip(settings.bodies, settings.inertias))
     try:
         return one_degree(pair_system(pinion, wheel), stiffness)

@@ -14,6 +14,7 @@ frequency of the whole system on the mean mesh stiffness is taken, so that this 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 from evolvent.dynamics.bodies.small_system import SmallSystem
 
@@ -28,6 +29,8 @@ class OneDegree:
     """δ [mm/N]: the compliance that the mesh has in statics and not in motion."""
     bore: float
     """h [mm/N]: how far the bores run ahead of the mass where the mesh force is below the load."""
+    next_frequency: float
+    """ω [rad/s] of the bodies' own vibration on the mesh that is left out: the lowest; infinite for rigid bodies."""
 
 
 def one_degree(system: SmallSystem, stiffness: float, mesh: int = 0) -> OneDegree:
@@ -44,6 +47,6 @@ def one_degree(system: SmallSystem, stiffness: float, mesh: int = 0) -> OneDegre
         )
     mass, stiffer = system.mass_at(mesh), held - free
     if free == 0.0:
-        return OneDegree(mass, stiffer, 0.0)
-    natural = system.natural(mesh, 1.0 / (1.0 / stiffness - held))
-    return OneDegree(1.0 / (1.0 / stiffness - stiffer) / natural**2, stiffer, system.compliance(g, b))
+        return OneDegree(mass, stiffer, 0.0, inf)
+    natural, following = system.natural(mesh, 1.0 / (1.0 / stiffness - held))
+    return OneDegree(1.0 / (1.0 / stiffness - stiffer) / natural**2, stiffer, system.compliance(g, b), following)

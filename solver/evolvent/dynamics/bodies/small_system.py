@@ -19,6 +19,9 @@ from evolvent_meshes.arrays import Floats
 RIGID = 1e-10
 """Of the largest ω²: below it a motion deforms nothing."""
 
+MESHING = 1e-2
+"""Part of a motion's elastic energy in the mesh from which on the mesh excites it."""
+
 
 @dataclass(frozen=True, eq=False)
 class GearShapes:
@@ -75,14 +78,18 @@ class SmallSystem:
         elastic = squares > 0.0
         return float(np.sum((one @ shapes[:, elastic]) * (other @ shapes[:, elastic]) / squares[elastic]))
 
-    def natural(self, mesh: int, stiffness: float) -> float:
+    def natural(self, mesh: int, stiffness: float) -> tuple[float, float]:
         """ω [rad/s] of small motions in which one mesh alone has a stiffness [N/mm] between the points at which it acts:
-        of the motion that carries most of the static transmission error."""
+        of the motion that carries most of the static transmission error, and of the next faster one in which the mesh
+        has a part; infinite where there is none."""
         g = self.closing[mesh]
         squares, shapes = la.eigh(self.stiffness + stiffness * np.outer(g, g), self.mass)
         least = RIGID * max(float(squares[-1]), 1.0)
-        carried = np.where(squares > least, (self.reading[mesh] @ shapes) ** 2 / np.maximum(squares, least), 0.0)
-        return float(np.sqrt(squares[np.argmax(carried)]))
+        safe = np.maximum(squares, least)
+        own = int(np.argmax(np.where(squares > least, (self.reading[mesh] @ shapes) ** 2 / safe, 0.0)))
+        meshing = stiffness * (g @ shapes) ** 2 / safe > MESHING
+        faster = squares[own + 1 :][meshing[own + 1 :]]
+        return float(np.sqrt(squares[own])), float(np.sqrt(faster[0])) if len(faster) else np.inf
 
 
 def pair_system(pinion: GearShapes, wheel: GearShapes) -> SmallSystem:

@@ -127,6 +127,9 @@ class DriveSummary:
     moving_stiffness_N_per_um: float
     """Mean stiffness in motion: that above, with elastic bodies stiffer, as their own inertia holds them and not their
     bores."""
+    body_frequency_Hz: float | None
+    """Lowest frequency of the bodies' own vibration on the mesh, which the one degree of freedom leaves out: where a low
+    mesh harmonic has it the motion is larger than computed. Null for rigid bodies."""
     static_force_N: float
     """Torque over base radius."""
     damping_N_s_per_mm: float
@@ -231,7 +234,7 @@ def summary(
         1e3 * drive.equivalent_mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness,
         1e-3 * errors.mean_stiffness, drive.natural_speed, errors.natural_speed,
         "rigid" if settings.bodies is None else "elastic", drive.rigid_natural_speed, 1e3 * drive.model.mass,
-        1e-3 * drive.moving_stiffness, drive.model.load,
+        1e-3 * drive.moving_stiffness, drive.body_frequency if settings.bodies is not None else None, drive.model.load,
         drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
         settings.damped_apart, settings.ground_damping_ratio, drive.natural_speed * drive.teeth / 60.0, folds,
         jumps(drive, swept.up), errors.jumps["up"],

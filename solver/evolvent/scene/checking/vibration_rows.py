@@ -29,6 +29,7 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
     return [
         ("moment of inertia", "I", "kg·m²", tuple(f"{1e-3 * each:.4g}" for each in settings.inertias)),
         ("equivalent mass along the line of action", "m_e", "kg", (f"{1e3 * mass:.4g}",)),
+        ("gear bodies", "", "", (section.bodies,)),
         ("damping ratio", "ζ", "", (f"{settings.damping_ratio:g}",)),
         ("backlash along the line of action", "j", "µm", (f"{1e3 * settings.backlash:.4g}",)),
         ("  lacking for unloaded errors", "", "µm", (f"{1e3 * _lacking(problem, settings, count):.3g}",)),

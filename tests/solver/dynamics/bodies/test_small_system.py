@@ -24,13 +24,14 @@ def pair(spring: float) -> SmallSystem:
 
 
 def test_natural_frequency_of_hubs_and_rims() -> None:
-    """Two such gears on a mesh of stiffness K swing against each other: (k + 2r²K − I_r ω²)(k − I_h ω²) = k², whose
-    lower root it is to 1e-10; what they carry of the static deflection and in free motion, to 1e-12."""
+    """Two such gears on a mesh of stiffness K swing against each other: (k + 2r²K − I_r ω²)(k − I_h ω²) = k²,
+    whose roots are both natural frequencies to 1e-10; what they carry of the static deflection and in free motion, to
+    1e-12."""
     spring, mesh = 2e9, 500e3
     first = spring + 2.0 * RADIUS**2 * mesh
     roots = np.roots([RIM * HUB, -(first * HUB + spring * RIM), first * spring - spring**2])
     system = pair(spring)
-    assert system.natural(0, mesh) == pytest.approx(np.sqrt(np.min(roots)), rel=1e-10)
+    assert system.natural(0, mesh) == pytest.approx(np.sqrt(np.sort(roots)), rel=1e-10)
     assert system.mass_at(0) == pytest.approx((HUB + RIM) / (2.0 * RADIUS**2), rel=1e-12)
     g, b = system.closing[0], system.reading[0]
     share, whole = HUB / (HUB + RIM), 2.0 * RADIUS**2 / spring
@@ -44,11 +45,11 @@ def test_unequal_gears_do_not_mind_their_order() -> None:
     and heavier leaves the pinion's alone, to 2 %."""
     one, other = gear(2e9), GearShapes(100.0 * gear(2e11).mass, gear(2e11).stiffness * 100.0, np.full(2, 90.0))
     both = pair_system(one, other), pair_system(other, one)
-    assert both[0].natural(0, 3e5) == pytest.approx(both[1].natural(0, 3e5), rel=1e-12)
+    assert both[0].natural(0, 3e5)[0] == pytest.approx(both[1].natural(0, 3e5)[0], rel=1e-12)
     assert both[0].mass_at(0) == pytest.approx(both[1].mass_at(0), rel=1e-12)
     first = 2e9 + RADIUS**2 * 3e5
     alone = np.roots([RIM * HUB, -(first * HUB + 2e9 * RIM), first * 2e9 - 2e9**2])
-    assert both[0].natural(0, 3e5) == pytest.approx(np.sqrt(np.min(alone)), rel=0.02)
+    assert both[0].natural(0, 3e5)[0] == pytest.approx(np.sqrt(np.min(alone)), rel=0.02)
 
 
 def test_stiff_bodies_are_rigid() -> None:
@@ -87,7 +88,7 @@ def test_one_degree_has_the_natural_frequency_of_all() -> None:
     body = one_degree(system, mesh)
     local = 1.0 / (1.0 / mesh - 2.0 * RADIUS**2 / spring)
     natural = np.sqrt(1.0 / (1.0 / mesh - body.stiffer) / body.mass)
-    assert natural == pytest.approx(system.natural(0, local), rel=1e-12)
+    assert natural == pytest.approx(system.natural(0, local)[0], rel=1e-12)
 
 
 def test_bodies_softer_than_the_mesh_are_refused() -> None:

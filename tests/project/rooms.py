@@ -66,7 +66,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.modes": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "fem.modes",
-        "fem.condensation", "contact.nitsche", "gears.problem", "gears.meshing", "gears.two_level", "gears", "dynamics", "dynamics.bodies",
+        "fem.condensation", "contact.nitsche", "gears.problem", "gears.meshing", "gears.two_level", "gears",
+        "dynamics", "dynamics.bodies",
     ),
     "dynamics.transient.step_lengths": ("meshes", "contact.transient.time_schemes"),
     "dynamics.transient": (
@@ -141,8 +142,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "strength.figures": ("meshes", "meshes.gears", "results.drawing", "strength.fatigue", "strength.results"),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
-        "gears.solution", "dynamics", "dynamics.modes", "dynamics.results.*", "dynamics.figures", "scene", "scene.schema",
-        "results.*", "wear.*",
+        "gears.solution", "dynamics", "dynamics.modes", "dynamics.results.*", "dynamics.figures", "scene",
+        "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem",

@@ -10,7 +10,19 @@ import pytest
 from evolvent.dynamics.oscillator.response import response
 from evolvent.dynamics.oscillator.steady_state import steady_state
 from evolvent.dynamics.pair_model import Drive, TooSoftBodies, drive
-from tests.support.hub_and_rim import ERROR, HUB, LOAD, LOCAL, PAIR, RADIUS, RIM, SPRING, STATIC, excitation, settings
+from tests.support.running.hub_and_rim import (
+    ERROR,
+    HUB,
+    LOAD,
+    LOCAL,
+    PAIR,
+    RADIUS,
+    RIM,
+    SPRING,
+    STATIC,
+    excitation,
+    settings,
+)
 
 
 def chain(pair: Drive, speed: float) -> tuple[float, float]:

@@ -4,11 +4,13 @@ With φ the free modes of the bodies (`SmallSystem.modes`), p = g·φ and b like
 coordinate s, and an elastic one is q = (b F_0 − p F)/ω² where it is far above the motion. Then, C(φ) the static
 compliance of the mesh between bores that are held,
 
-    m s̈ + F = F_0 ,   s − e = (C − δ) F ,   δ = Σ (p − b)²/ω² − Σ p²/ω² ,   t = s + h (F_0 − F) + const,  h = Σ p b/ω² .
+    m s̈ + F = F_0 ,   s − e = (C − δ) F ,   δ = Σ (p − b)²/ω² − Σ p²/ω² ,
+    t = s + δ F_0 + h (F_0 − F) ,   h = Σ p b/ω² .
 
-C has in it what bodies give way between mesh and bore. In motion they are held by their inertia instead, which lies
-nearer to the mesh: δ is the difference. What the elastic modes lag behind makes the mass larger: the one that has the natural
-frequency of the whole system on the mean mesh stiffness is taken, so that this frequency is exact.
+t is the transmission error. C has in it what bodies give way between mesh and bore. In motion they are held by their
+inertia instead, which lies nearer to the mesh: δ is the difference. What the elastic modes lag behind makes the mass
+larger: the one that has the natural frequency of the whole system on the mean mesh stiffness is taken, so that this
+frequency is exact.
 """
 
 from __future__ import annotations

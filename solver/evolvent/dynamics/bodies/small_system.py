@@ -2,8 +2,8 @@
 
     M z̈ + K z = Σ g_j (F_0j − F_j) ,    x_j = g_j·z ,    t_j = b_j·z
 
-x_j is what mesh j closes by, where its force acts; t_j is the same at the bores, the transmission error. K is that of the
-bodies alone, so that rigid rotation is free. Shafts and further meshes add coordinates and rows.
+x_j is what mesh j closes by, where its force acts; t_j is the same at the bores, the transmission error. K is that of
+the bodies alone, so that rigid rotation is free. Shafts and further meshes add coordinates and rows.
 """
 
 from __future__ import annotations
@@ -79,8 +79,8 @@ class SmallSystem:
         return float(np.sum((one @ shapes[:, elastic]) * (other @ shapes[:, elastic]) / squares[elastic]))
 
     def natural(self, mesh: int, stiffness: float) -> tuple[float, float]:
-        """ω [rad/s] of small motions in which one mesh alone has a stiffness [N/mm] between the points at which it acts:
-        of the motion that carries most of the static transmission error, and of the next faster one in which the mesh
+        """ω [rad/s] of small motions in which one mesh alone has a stiffness [N/mm] where its force acts: of the motion
+        that carries most of the static transmission error, and of the next faster one in which the mesh
         has a part; infinite where there is none."""
         g = self.closing[mesh]
         squares, shapes = la.eigh(self.stiffness + stiffness * np.outer(g, g), self.mass)

@@ -1,4 +1,4 @@
-"""The mesh force on a gear's flanks, in the mean over a pitch: shared alike along all contact lines of each position."""
+"""The mesh force on a gear's flanks, in the mean over a pitch: shared alike along all contact lines of a position."""
 
 from __future__ import annotations
 

@@ -114,22 +114,22 @@ class DriveSummary:
     """Its estimated error by the mesh and by the spacing of positions; null where there is no coarse companion
     (`output.error_bars`)."""
     natural_speed_rpm: float
-    """Of the pinion, at which the mesh frequency is the natural one at that stiffness, with the bodies as `bodies` says."""
+    """Of the pinion, at which the mesh frequency is the natural one at that stiffness, on rigid or elastic bodies."""
     natural_speed_rpm_error: float
     """Its estimated error by that of the stiffness."""
     bodies: str
     """elastic: gear bodies give way with their inertia where it is; rigid: all inertia is at the bores."""
     rigid_natural_speed_rpm: float
-    """The natural speed of rigid bodies: too low, the more the smaller the bores; what their stiffness in motion changes
-    is the difference to natural_speed_rpm."""
+    """The natural speed with all inertia at the bores: too low, the more the smaller these are. That of
+    natural_speed_rpm where bodies are rigid."""
     moving_mass_kg: float
     """Mass of the one degree of freedom: m_e, with elastic bodies more by what they lag behind."""
     moving_stiffness_N_per_um: float
     """Mean stiffness in motion: that above, with elastic bodies stiffer, as their own inertia holds them and not their
     bores."""
     body_frequency_Hz: float | None
-    """Lowest frequency of the bodies' own vibration on the mesh, which the one degree of freedom leaves out: where a low
-    mesh harmonic has it the motion is larger than computed. Null for rigid bodies."""
+    """Lowest frequency of the bodies' own vibration on the mesh, which the one degree of freedom leaves out: where a
+    low mesh harmonic has it the motion is larger than computed. Null for rigid bodies."""
     static_force_N: float
     """Torque over base radius."""
     damping_N_s_per_mm: float

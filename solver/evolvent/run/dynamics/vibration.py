@@ -188,8 +188,8 @@ def body_resonances(vibrating: Drive, fastest: float) -> list[str]:
         return []
     places = ", ".join(f"{speed:.0f} r/min (mesh harmonic {number})" for number, speed in near)
     return [
-        f"gear bodies: their own vibration of {vibrating.body_frequency:.0f} Hz on the mesh is left out. Within a tenth "
-        f"of {places} motion and forces are larger than computed; evolvent transient has it"
+        f"gear bodies: their own vibration of {vibrating.body_frequency:.0f} Hz on the mesh is left out. Within a "
+        f"tenth of {places} motion and forces are larger than computed; evolvent transient has it"
     ]
 
 
@@ -200,8 +200,8 @@ def _warnings(
     found, deflection = [], vibrating.model.load / vibrating.mean_stiffness
     if settings.bodies is None:
         found.append(
-            'dynamics.bodies = "rigid": all inertia is at the bores, behind what gives way between bore and mesh, so that '
-            "natural speed, resonances and jumps lie too low, the more the smaller the bores "
+            'dynamics.bodies = "rigid": all inertia is at the bores, behind what gives way between bore and mesh, so '
+            "that natural speed, resonances and jumps lie too low, the more the smaller the bores "
             '(docs/dynamics.md, gear bodies); "elastic" has the inertia where it is'
         )
     found += body_resonances(vibrating, speed_of(vibrating, float(swept.periods[-1])))

@@ -41,8 +41,8 @@ def test_natural_frequency_of_hubs_and_rims() -> None:
 
 
 def test_unequal_gears_do_not_mind_their_order() -> None:
-    """Pinion and wheel exchanged: the same natural frequency and mass, to 1e-12; a wheel that is a hundred times stiffer
-    and heavier leaves the pinion's alone, to 2 %."""
+    """Pinion and wheel exchanged: the same natural frequency and mass, to 1e-12; a wheel that is a hundred times
+    stiffer and heavier leaves the pinion's alone, to 2 %."""
     one, other = gear(2e9), GearShapes(100.0 * gear(2e11).mass, gear(2e11).stiffness * 100.0, np.full(2, 90.0))
     both = pair_system(one, other), pair_system(other, one)
     assert both[0].natural(0, 3e5)[0] == pytest.approx(both[1].natural(0, 3e5)[0], rel=1e-12)
@@ -71,8 +71,8 @@ def test_more_inertia_at_the_bore() -> None:
 
 
 def test_a_gear_of_some_width() -> None:
-    """Per mm of face, twenty times as wide: natural frequency with twenty times the stiffness, the same to 1e-12, the mass
-    twenty times, and a twentieth of the compliance."""
+    """Per mm of face, twenty times as wide: natural frequency with twenty times the stiffness, the same to 1e-12, the
+    mass twenty times, and a twentieth of the compliance."""
     one, wide = pair(2e9), pair_system(gear(2e9).scaled(20.0), gear(2e9).scaled(20.0))
     assert wide.natural(0, 20.0 * 3e5) == pytest.approx(one.natural(0, 3e5), rel=1e-12)
     assert wide.mass_at(0) == pytest.approx(20.0 * one.mass_at(0), rel=1e-12)
@@ -81,8 +81,8 @@ def test_a_gear_of_some_width() -> None:
 
 
 def test_one_degree_has_the_natural_frequency_of_all() -> None:
-    """On a mesh whose compliance between held bores is C: √(1/(C − δ)/m) is the natural frequency of the whole system on
-    what C has beyond its bodies, to 1e-12."""
+    """On a mesh whose compliance between held bores is C: √(1/(C − δ)/m) is the natural frequency of the whole system
+    on what C has beyond its bodies, to 1e-12."""
     spring, mesh = 6e9, 300e3
     system = pair(spring)
     body = one_degree(system, mesh)

@@ -34,7 +34,10 @@ def bored(bore: float) -> tuple[str, ...]:
 
 @pytest.mark.parametrize(
     ("bore", "rigid"),
-    [(36.0, 0.19), pytest.param(70.0, 0.055, marks=pytest.mark.slow), pytest.param(100.0, 0.020, marks=pytest.mark.slow)],
+    [
+        (36.0, 0.19), pytest.param(70.0, 0.055, marks=pytest.mark.slow),
+        pytest.param(100.0, 0.020, marks=pytest.mark.slow),
+    ],
 )
 def test_natural_frequency_with_static_shapes(bore: float, rigid: float) -> None:
     """Problem: `evolvent dynamics` took gear bodies as rigid, so that the natural frequency of He's pair was 2 to 20 %

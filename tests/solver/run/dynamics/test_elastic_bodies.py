@@ -16,7 +16,7 @@ from evolvent.run.dynamics.vibration import body_resonances, run_dynamics
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
-from tests.support.hub_and_rim import LOAD, PAIR, excitation, settings
+from tests.support.running.hub_and_rim import LOAD, PAIR, excitation, settings
 
 SPEEDS = (4000.0, 6000.0)
 

@@ -80,8 +80,8 @@ class SmallSystem:
 
     def natural(self, mesh: int, stiffness: float) -> tuple[float, float]:
         """ω [rad/s] of small motions in which one mesh alone has a stiffness [N/mm] where its force acts: of the motion
-        that carries most of the static transmission error, and of the next faster one in which the mesh
-        has a part; infinite where there is none."""
+        that carries most of the static transmission error, and of the next faster one in which the mesh has a part;
+        infinite where there is none."""
         g = self.closing[mesh]
         squares, shapes = la.eigh(self.stiffness + stiffness * np.outer(g, g), self.mass)
         least = RIGID * max(float(squares[-1]), 1.0)

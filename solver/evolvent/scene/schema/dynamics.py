@@ -61,7 +61,8 @@ class DynamicsSection(SceneSection):
     )
     bodies: Literal["elastic", "rigid"] = key(
         "the gear bodies: they give way with their inertia where it is, or they are rigid, with all inertia at the "
-        "bores and what gives way between bore and mesh in front of it, so that a small bore has too low a natural speed",
+        "bores and what gives way between bore and mesh in front of it, so that a small bore has too low a natural "
+        "speed",
         '"elastic" or "rigid"',
         default="rigid",
     )

@@ -59,14 +59,15 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.oscillator": ("meshes", "fem.backend"),
     "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
+    "dynamics.bodies": ("meshes",),
     "dynamics": (
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
-        "dynamics.oscillator",
+        "dynamics.oscillator", "dynamics.bodies",
     ),
     "dynamics.modes": (
-        "meshes", "meshes.mesh", "meshes.sector", "fem", "fem.parallel", "fem.modes", "fem.condensation",
-        "contact.nitsche",
-        "gears.problem", "gears.meshing", "gears.two_level", "gears",
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "fem.modes",
+        "fem.condensation", "contact.nitsche", "gears.problem", "gears.meshing", "gears.two_level", "gears",
+        "dynamics", "dynamics.bodies",
     ),
     "dynamics.transient.step_lengths": ("meshes", "contact.transient.time_schemes"),
     "dynamics.transient": (
@@ -139,8 +140,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "strength.figures": ("meshes", "meshes.gears", "results.drawing", "strength.fatigue", "strength.results"),
     "run": (
-        "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep", "gears.solution",
-        "dynamics", "dynamics.results.*", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
+        "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
+        "gears.solution", "dynamics", "dynamics.modes", "dynamics.results.*", "dynamics.figures", "scene",
+        "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem",

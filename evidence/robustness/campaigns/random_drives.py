@@ -177,4 +177,5 @@ def _suddenly(draw: Draw, pair: GearPair, smooth: Drive, settings: DriveSettings
         equivalent_mass(pair, settings.inertias), model.load, paper_law(side, settings.backlash), model.damping,
         model.damped_apart, model.ground_damping,
     )  # fmt: skip
-    return Drive(stepped, smooth.mean_stiffness, smooth.teeth, settings)
+    rest = smooth.moving_stiffness, smooth.equivalent_mass, smooth.body_frequency
+    return Drive(stepped, smooth.mean_stiffness, smooth.teeth, settings, *rest)

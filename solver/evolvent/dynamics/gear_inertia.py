@@ -7,13 +7,17 @@ from scipy.integrate import simpson
 
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile
+from evolvent_meshes.input_checks import Words, refuse
 
 POINTS = 2001
 """Of fillet and involute each: the moment of inertia is then right to 1e-9."""
 TONNE_PER_MM3 = 1e-12
 """One kg/m³."""
+ROUNDING = 1e-3
+"""By which the meshed body may have more inertia than the drawn one."""
 
 
 def polar_moment(gear: GearParameters, density: float) -> float:
@@ -59,6 +63,18 @@ def equivalent_mass(pair: GearPair, inertias: tuple[float, float]) -> float:
     """m_e = I_1 I_2 / (I_1 r_b2² + I_2 r_b1²) [t] of moments of inertia [t·mm²] of pinion and wheel."""
     pinion, wheel = inertias
     return pinion * wheel / (pinion * pair.wheel.base_radius**2 + wheel * pair.pinion.base_radius**2)
+
+
+def refuse_less_than_the_body(member: Member, inertia: float, body: float, remedy: str) -> None:
+    """Raises InputError for an inertia that is less than that of the meshed body, all of whose mass moves [t·mm²].
+    remedy: the setting that has all inertia at the bore."""
+    if inertia < (1.0 - ROUNDING) * body:
+        refuse(
+            f"dynamics.{member.label}_inertia_kg_m2",
+            f"at least that of the meshed body, {1e-3 * body:.4g} kg m², which gives way with all of its mass",
+            Words(f"{1e-3 * inertia:.4g} kg m²"),
+            f"delete the key for the body's own, enlarge the bore, or take {remedy}",
+        )  # fmt: skip
 
 
 def _swept(points: Floats) -> float:

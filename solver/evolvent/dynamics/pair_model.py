@@ -8,6 +8,8 @@ from typing import Literal
 
 import numpy as np
 
+from evolvent.dynamics.bodies.one_degree import OneDegree, one_degree
+from evolvent.dynamics.bodies.small_system import GearShapes, pair_system
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.gear_inertia import equivalent_mass
@@ -16,6 +18,7 @@ from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.pair import GearPair
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
@@ -23,6 +26,13 @@ NANOMETRE = 1e-6
 """To which unloaded errors are right [mm]; no backlash is asked for less."""
 OVERLAP = 0.01
 """Of both sides of the teeth, over the static deflection, that is taken for the inaccuracy of their errors."""
+
+
+class TooSoftBodies(ResultError):
+    """Static shapes of gear bodies that give way more than the whole mesh does."""
+
+    def __init__(self, what: str) -> None:
+        super().__init__(f'{what}; take dynamics.bodies = "rigid", or evolvent transient')
 
 
 @dataclass(frozen=True)
@@ -44,6 +54,9 @@ class DriveSettings:
     """Of shafts and bearings along the line of action [N/mm]."""
     mesh: MeshModel = "force_surface"
     """The mesh force."""
+    bodies: tuple[GearShapes, GearShapes] | None = None
+    """How the bodies of pinion and wheel give way, on their whole width; None: they are rigid, with all inertia at the
+    bores."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,26 +72,81 @@ class Drive:
     """Of the pinion."""
     settings: DriveSettings
     """What it was made with."""
+    moving_stiffness: float
+    """The mean stiffness in motion [N/mm]: with elastic bodies their inertia lies nearer to the mesh than the bores,
+    which hold them in statics. That of `mean_stiffness` where bodies are rigid."""
+    equivalent_mass: float
+    """m_e of rigid bodies [t]."""
+    body_frequency: float
+    """Lowest frequency [Hz] of the bodies' own vibration on the mesh, which one degree of freedom leaves out; infinite
+    for rigid bodies."""
 
     @property
     def natural_speed(self) -> float:
         """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness [r/min]."""
-        return math.sqrt(self.mean_stiffness / self.model.mass) / (2.0 * math.pi) * 60.0 / self.teeth
+        return self._speed(self.moving_stiffness / self.model.mass)
+
+    def body_speed(self, harmonic: int) -> float:
+        """Of the pinion, at which this mesh harmonic has that frequency [r/min]."""
+        return 60.0 * self.body_frequency / (harmonic * self.teeth)
+
+    @property
+    def rigid_natural_speed(self) -> float:
+        """The same of rigid bodies, with all inertia at the bores [r/min]."""
+        return self._speed(self.mean_stiffness / self.equivalent_mass)
+
+    def _speed(self, square: float) -> float:
+        """[r/min] at which the mesh frequency is that of ω² [1/s²]."""
+        return math.sqrt(square) / (2.0 * math.pi) * 60.0 / self.teeth
 
 
 def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: DriveSettings) -> Drive:
     """The pair under a load, F_0 [N]. The force surface serves every load up to its heaviest; stiffnesses under a load
-    between two that were solved are those of `MeshExcitation.under`. Raises ValueError beyond the heaviest, Jammed."""
-    mass = equivalent_mass(pair, settings.inertias)
+    between two that were solved are those of `MeshExcitation.under`. Raises ValueError beyond the heaviest, Jammed,
+    TooSoftBodies."""
     mesh = excitation if math.isinf(settings.series_stiffness) else excitation.in_series(settings.series_stiffness)
-    depth, tangent = mesh.under(load)
-    mean = float(np.mean(load / depth if settings.mesh == "secant" else tangent))
-    critical = 2.0 * math.sqrt(mean * mass)
+    mean = _mean(mesh, load, settings)
+    body = _body(pair, mean, settings)
+    if body.stiffer != 0.0:
+        _check_left(mesh, body.stiffer)
+        mesh = mesh.in_series(-1.0 / body.stiffer)
+    moving = _mean(mesh, load, settings)
+    critical = 2.0 * math.sqrt(moving * body.mass)
     model = TorsionalModel(
-        mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
-        settings.damped_apart, settings.ground_damping_ratio * critical, teeth=pair.pinion.z,
+        body.mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
+        settings.damped_apart, settings.ground_damping_ratio * critical, body.stiffer * load, body.bore,
+        teeth=pair.pinion.z,
     )  # fmt: skip
-    return Drive(model, mean, pair.pinion.z, settings)
+    rigid = equivalent_mass(pair, settings.inertias)
+    return Drive(model, mean, pair.pinion.z, settings, moving, rigid, body.next_frequency / (2.0 * math.pi))
+
+
+def _mean(mesh: MeshExcitation, load: float, settings: DriveSettings) -> float:
+    """Mean stiffness over the pitch under a load [N/mm]."""
+    depth, tangent = mesh.under(load)
+    return float(np.mean(load / depth if settings.mesh == "secant" else tangent))
+
+
+def _body(pair: GearPair, stiffness: float, settings: DriveSettings) -> OneDegree:
+    """Both bodies on a mesh of this mean stiffness [N/mm]. Raises TooSoftBodies."""
+    if settings.bodies is None:
+        return OneDegree(equivalent_mass(pair, settings.inertias), 0.0, 0.0, math.inf)
+    pinion, wheel = (gear.with_inertia(moment) for gear, moment in zip(settings.bodies, settings.inertias))
+    try:
+        return one_degree(pair_system(pinion, wheel), stiffness)
+    except ValueError as error:
+        raise TooSoftBodies(str(error)) from error
+
+
+def _check_left(mesh: MeshExcitation, stiffer: float) -> None:
+    """Raises TooSoftBodies where the mesh gives way less at some position under some torque than its bodies are stiffer
+    in motion [mm/N]."""
+    least = 1.0 / float(mesh.loaded.stiffness.max())
+    if least <= stiffer:
+        raise TooSoftBodies(
+            f"compliance of the mesh: wanted more at each position than what the bodies are stiffer by in motion, "
+            f"{1e3 * stiffer:.4g} µm/N, found {1e3 * least:.4g} µm/N"
+        )
 
 
 def lacking_room(problem: GearProblem, positions: int, settings: DriveSettings) -> float:

@@ -30,10 +30,9 @@ from evolvent.run.folder_checks import check_folder, foreign_files
 from evolvent.run.output import ExtraResults, log_pictures, write_output
 from evolvent.run.pitch_run import sweep_scene
 from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT, VIBRATION
-from evolvent.run.start import ResumePoint, no_results_warning, resume_point, scene_to_solve
+from evolvent.run.start import ResumePoint, elastic_point, no_results_warning, resume_point, scene_to_solve
 from evolvent.run.wear_run import wear_scene, write_wear
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import operating_point
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import one_mesh_reason, skipped, switched_off, wanted_output
 from evolvent.scene.vibration_limits import doubtful
@@ -69,7 +68,7 @@ def run_scene(
         dolfinx_compat.silence_logs()
         solved = on_first(comm, lambda: scene_to_solve(scene, Archive(out, scene), resume))
         completed = on_first(comm, lambda: resume_point(solved, Archive(out, solved), resume))
-        point, vibrating = operating_point(solved), None
+        point, vibrating = elastic_point(solved, comm), None
         with run_context(folder, comm, resume, quiet, begin, prepare) as run:  # no file has been touched yet
             if point is not None:
                 for sentence in doubtful(solved.planned_vibration()):

@@ -1,11 +1,18 @@
-"""How a run begins: what earlier results it continues, its condensed gears, its folder."""
+"""How a run begins: what earlier results it continues, its condensed gears, the bodies of its vibration, its folder."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from mpi4py import MPI
+
+from evolvent.dynamics.modes.static_shapes import with_elastic_bodies
+from evolvent.dynamics.operating_point import OperatingPoint
+from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparation, prepare_model
 from evolvent.gears.meshed_gear import meshed_gear
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.periodic_pitch import transmission_errors
 from evolvent.gears.sweep.pitch_sweep import SweepState
 from evolvent.results.archive.archive import Archive
@@ -16,7 +23,9 @@ from evolvent.results.archive.scene_files import SCENE_FILES, write_scene
 from evolvent.run.context import RunContext
 from evolvent.run.progress import CONDENSING, MESHING
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.pair_dynamics import operating_point
 from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import with_deflected_flanks
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
@@ -103,3 +112,20 @@ def open_archive(scene: Scene, archive: Archive, meshes: MeshRecord, resumed: bo
 def clear(folder: RunFolder) -> None:
     """Removes an earlier run except its scene files, which this run may have read. Raises OSError."""
     folder.clear(keep=[folder.out / name for name in SCENE_FILES])
+
+
+def with_bodies(
+    settings: DriveSettings, problem: GearProblem, section: DynamicsSection, comm: MPI.Comm
+) -> DriveSettings:
+    """The settings with the bodies that the section wants. Collective. Raises as `with_elastic_bodies`."""
+    if section.bodies == "rigid":
+        return settings
+    return on_first(comm, lambda: with_elastic_bodies(settings, problem, section.density_kg_m3))
+
+
+def elastic_point(scene: Scene, comm: MPI.Comm) -> OperatingPoint | None:
+    """As `operating_point`, with the scene's gear bodies. Collective."""
+    point, section = operating_point(scene), scene.dynamics
+    if point is None or section is None:
+        return None
+    return replace(point, settings=with_bodies(point.settings, gear_problem(scene), section, comm))

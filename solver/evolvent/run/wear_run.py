@@ -24,9 +24,8 @@ from evolvent.run.context import RunContext
 from evolvent.run.output import facts_of, log_pictures
 from evolvent.run.pitch_run import SweepRecord
 from evolvent.run.progress import CYCLES
-from evolvent.run.start import checked_meshes, clear, prepare_gears, timings_of
+from evolvent.run.start import checked_meshes, clear, elastic_point, prepare_gears, timings_of
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import operating_point
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.wear import WearSection
 from evolvent.scene.skips import wanted_output
@@ -61,7 +60,7 @@ def wear_scene(run: RunContext, scene: Scene) -> SweepRecord:
     preparation = prepare_gears(run, scene)
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     μ = scene.contact.friction[0]
-    motion, operating = mesh_motion_of(run, scene), operating_point(scene)
+    motion, operating = mesh_motion_of(run, scene), elastic_point(scene, run.comm)
     gears = GearWear(preparation.model, pitch, μ, law_of(wear), run.comm, motion, operating)
     meshes = MeshRecord.of([MeshedGear.of(body) for body in preparation.model.bodies])
     run.progress.stage(CYCLES, round(wear.cycles), round(kept.cycles if kept else 0.0))

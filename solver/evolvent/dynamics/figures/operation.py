@@ -32,7 +32,7 @@ def operation_figure(operation: Operation) -> Figure:
     for ahead, path in enumerate(operation.paths):
         phase = path.phases + ahead
         force.plot(phase, 1e-3 * path.force, color=PINION, label="" if ahead else "vibrating")
-        error.plot(phase, 1e3 * path.displacement, color=PINION, label="" if ahead else "vibrating")
+        error.plot(phase, 1e3 * path.transmission_error, color=PINION, label="" if ahead else "vibrating")
     force.axhline(1e-3 * figures.static_force_N, color=WHEEL, ls="--", label="static")
     loaded, e = operation.excitation.loaded, operation.excitation.unloaded_error
     load = operation.drive.model.load

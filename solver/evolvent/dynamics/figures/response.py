@@ -50,7 +50,7 @@ def response_figure(
     figure = sheet(
         "Vibration over the speed: running up, running down, and the steady states between",
         f"Natural speed {drive.natural_speed:.0f} r/min at the mean {_kind(drive)} stiffness of "
-        f"{1e-3 * drive.mean_stiffness:.1f} N/µm{_folds(drive, swept)}.",
+        f"{1e-3 * drive.mean_stiffness:.1f} N/µm, with {_bodies(drive)} gear bodies{_folds(drive, swept)}.",
         (11.0, 8.6),
     )
     amplitude, factor, apart = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 2.0, 1.0))
@@ -95,6 +95,10 @@ def response_figure(
         *([BAND] if np.isfinite(errors.dynamic_factor["up"]).any() else []),
     )
     return figure
+
+
+def _bodies(drive: Drive) -> str:
+    return "rigid" if drive.settings.bodies is None else "elastic"
 
 
 def _kind(drive: Drive) -> str:

@@ -40,6 +40,10 @@ class CyclicFaces:
         T = self._expansion(phase)
         return (T.conj().T @ matrix @ T).tocsr()
 
+    def gathered(self, forces: Numbers, phase: complex) -> Numbers:
+        """Tᴴf (n_i + c,) of forces on a sector (N,) at e^{iθ}."""
+        return np.asarray(self._expansion(phase).conj().T @ forces)
+
     def expanded(self, reduced: Numbers, phase: complex, size: int) -> Numbers:
         """A sector's displacements (size, ...) from those of interior and low face (n_i + c, ...)."""
         inside, low = np.split(reduced, [len(self.interior)])

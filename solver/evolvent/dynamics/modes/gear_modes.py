@@ -11,11 +11,12 @@ import scipy.sparse as sp
 from evolvent.contact.nitsche.flux_recovery import NitscheTraction
 from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces, Numbers
 from evolvent.dynamics.modes.ring_modes import RingModes, SectorMatrices, harmonics, modes_below, ring_modes
+from evolvent.fem.body import Body
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.fem.modes.mass_matrix import mass_matrix
 from evolvent.fem.parallel.memory import return_free_memory
-from evolvent.fem.surface import surface_of
-from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
+from evolvent.fem.surface import Surface, surface_of
+from evolvent.gears.condensed_gear import GearBody, SectorParts, sector_body, sector_parts
 from evolvent.gears.kinematics import spin, turn
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent_meshes.arrays import Floats, Ints
@@ -104,24 +105,32 @@ def gear_modes(
     return GearModes(replace(found, shapes=functionals), moment, spun)
 
 
-def _on_mesh(
-    body: GearBody, sector_of: MeshData, traction: NitscheTraction | None, choice: ModeChoice,
-    computed: Callable[[], None],
-) -> tuple[RingModes, float, Floats, Numbers]:  # fmt: skip
-    """Modes, moment of inertia and `GearModes.spun` on a sector mesh, and the modes at its flank's functionals."""
-    elastic, pitch, N = sector_body(sector_of, body.material, body.member), 2.0 * np.pi / body.gear.z, body.gear.z
-    parts = sector_parts(elastic, surface_of(sector_of, "flank"), traction, pitch)
+def sector_matrices(
+    elastic: Body, flank: Surface, traction: NitscheTraction | None, sectors: int
+) -> tuple[SectorMatrices, sp.csr_matrix, SectorParts]:  # fmt: skip
+    """Matrices of a sector of a gear of so many, its mass matrix with the held degrees of freedom, and its parts.
+    traction: of Nitsche's method on its flank, None without."""
+    pitch, d = 2.0 * np.pi / sectors, elastic.mesh.dimension
+    parts = sector_parts(elastic, flank, traction, pitch)
     M = mass_matrix(elastic)
     place = np.full(M.shape[0], -1)
     place[parts.free] = np.arange(len(parts.free))
     low, high = place[parts.low], place[parts.high]
     interior = np.setdiff1d(np.arange(len(parts.free)), np.concatenate([low, high]))
-    about = sp.kron(sp.eye(len(low) // body.d), turn(pitch, body.d)).tocsr()
+    about = sp.kron(sp.eye(len(low) // d), turn(pitch, d)).tocsr()
     stiffness, mass = (matrix.tocsr()[parts.free][:, parts.free] for matrix in (parts.stiffness, M))
-    sector = SectorMatrices(stiffness, mass, CyclicFaces(interior, low, high, about))
+    return SectorMatrices(stiffness, mass, CyclicFaces(interior, low, high, about)), M, parts
+
+
+def _on_mesh(
+    body: GearBody, sector_of: MeshData, traction: NitscheTraction | None, choice: ModeChoice,
+    computed: Callable[[], None],
+) -> tuple[RingModes, float, Floats, Numbers]:  # fmt: skip
+    """Modes, moment of inertia and `GearModes.spun` on a sector mesh, and the modes at its flank's functionals."""
+    elastic, N = sector_body(sector_of, body.material, body.member), body.gear.z
+    sector, M, parts = sector_matrices(elastic, surface_of(sector_of, "flank"), traction, N)
     found = choice.of(sector, N, computed)
     r = spin(sector_of.points[:, : body.d], np.zeros(body.d)).ravel()
     pushed = np.real(found.shapes.T @ (M @ r)[parts.free])
     spun = np.where(found.harmonic == 0, N * pushed, 0.0)
     return found, float(N * (r @ (M @ r))), spun, parts.functionals.tocsc()[:, parts.free] @ found.shapes
-

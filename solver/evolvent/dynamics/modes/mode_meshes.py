@@ -11,6 +11,7 @@ from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.companion_meshes import coarser
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 
@@ -23,8 +24,19 @@ def mode_mesh(problem: GearProblem, body: GearBody) -> MeshData | None:
     Raises MeshError."""
     if len(body.mesh.points) <= OWN_NODES and not body.levels:
         return None
+    return coarse_sector(problem, body.member)
+
+
+def body_mesh(problem: GearProblem, member: Member) -> MeshData:
+    """A sector for static shapes of a gear's body: the problem's own one in 2D, in space a coarse one. Raises
+    MeshError."""
+    return gear_mesh(problem, member) if problem.is_plane else coarse_sector(problem, member)
+
+
+def coarse_sector(problem: GearProblem, member: Member) -> MeshData:
+    """A coarse sector of a gear, whatever the mesh of the problem. Raises MeshError."""
     settings = replace(MeshSettings("quick"), shape=problem.mesh.shape)
-    return gear_mesh(replace(problem, mesh=settings), body.member, adapted=_coarse_flank)
+    return gear_mesh(replace(problem, mesh=settings), member, adapted=_coarse_flank)
 
 
 def _coarse_flank(fine: SectorResolution) -> SectorResolution:

@@ -91,7 +91,7 @@ def modes_below(sector: SectorMatrices, sectors: int, highest: float) -> list[in
     Raises NotPositiveDefinite where the interior alone, with its cut faces held, vibrates below it; OutOfMemory.
     """
     shifted = CyclicStiffness((sector.stiffness - highest**2 * sector.mass).tocsr(), sector.faces)
-    return [shifted.negative(_phase(k, sectors)) for k in harmonics(sectors)]
+    return [shifted.negative(phase_of(k, sectors)) for k in harmonics(sectors)]
 
 
 def ring_modes(
@@ -105,7 +105,7 @@ def ring_modes(
     for k, count in enumerate(counts):
         if not count or cyclic is None:
             continue
-        single, phase = 2 * k in (0, sectors), _phase(k, sectors)
+        single, phase = 2 * k in (0, sectors), phase_of(k, sectors)
         ω, φ = _modes(sector, cyclic.inverse(phase), phase, count)
         whole = sector.faces.expanded(φ, phase, size) * np.sqrt((1.0 if single else 2.0) / sectors)
         copies = 1 if single else 2
@@ -121,7 +121,7 @@ def ring_modes(
     return RingModes(sectors, np.concatenate(frequencies), *numbers, np.concatenate(shapes, axis=1))
 
 
-def _phase(k: int, sectors: int) -> complex:
+def phase_of(k: int, sectors: int) -> complex:
     """e^{2πik/N}, a real number where it is one."""
     turned = np.exp(2j * np.pi * k / sectors)
     return complex(turned) if 2 * k not in (0, sectors) else float(np.real(turned))

@@ -75,7 +75,7 @@ def response(model: TorsionalModel, period: float, state: Floats, repeats: int =
     paths = histories(model, period, state, repeats, wanted)
     at = np.searchsorted(paths[0].phases, wanted - 1e-12)
     total, error, force = (
-        np.concatenate([getattr(path, name)[at] for path in paths]) for name in ("displacement", "error", "force")
+        np.concatenate([getattr(path, name)[at] for path in paths]) for name in ("transmission_error", "error", "force")
     )
     s, x, F = (_amplitudes(values) for values in (total, total - error, force))
     mesh = slice(repeats - 1, HARMONICS * repeats, repeats)

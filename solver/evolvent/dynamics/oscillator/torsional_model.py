@@ -43,6 +43,15 @@ class TorsionalModel:
     flanks touch."""
     ground_damping: float = 0.0
     """c_g, of the shafts against the ground [N·s/mm]."""
+    bore_offset: float = 0.0
+    """How far the bores are ahead of s under the static load [mm]: elastic bodies, see `dynamics.bodies.one_degree`."""
+    bore_compliance: float = 0.0
+    """By how much more [mm/N] where the mesh force is below the load."""
+
+    def between_bores(self, displacement: Floats, force: Floats) -> Floats:
+        """The displacement between the bores, the transmission error (k,) [mm], at displacements s and mesh forces
+        (k,); s itself where bodies are rigid."""
+        return displacement + self.bore_offset + self.bore_compliance * (self.load - force)
 
     def place(self, period: float) -> str:
         """A mesh period [s] as messages name it: by the speed of the pinion where that is known."""
@@ -95,6 +104,8 @@ class History:
     """Of the mesh, with its damping [N]; below 0 where the back flanks press, or the damper pulls at parting flanks."""
     error: Floats
     """e of the loaded flanks [mm]."""
+    transmission_error: Floats
+    """Displacement between the bores [mm]: s itself where bodies are rigid."""
     apart: float
     """Share of the period out of contact."""
     behind: float
@@ -127,7 +138,8 @@ def history(model: TorsionalModel, period: float, state: Floats, phases: Floats 
     apart, behind, low, high = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
     s, v, side, force, error = path.T
     smallest, largest = min(low, float(force.min())), max(high, float(force.max()))
-    return History(stops, s, v, side.astype(np.int64), force, error, apart, behind, smallest, largest)
+    bores = model.between_bores(s, force)
+    return History(stops, s, v, side.astype(np.int64), force, error, bores, apart, behind, smallest, largest)
 
 
 def _with_derivatives(state: Floats) -> Floats:

@@ -35,9 +35,10 @@ class HistoryRow:
     transmission_error_um: float
     """s, the dynamic transmission error with the unloaded one in it."""
     elastic_um: float
-    """s − e: how far the loaded flanks are beyond first contact; below 0 they are apart."""
+    """s − e: how far the loaded flanks are beyond first contact; below 0 they are apart. With elastic bodies s is taken
+    between the bores, which swing beside the mass: `contact` says what touches."""
     velocity_mm_per_s: float
-    """ds/dt."""
+    """ds/dt; with elastic bodies of the mass on the mesh."""
     force_N: float
     """Of the mesh, damping included; where contact begins or ends it jumps between two lines."""
     contact: int
@@ -88,7 +89,7 @@ def motions(drive: Drive, swept: SpeedSweep, speeds: Sequence[float]) -> list[Mo
 def history_rows(found: Iterable[Motion]) -> Iterator[HistoryRow]:
     """One motion after the other."""
     for motion in found:
-        columns = (motion.over(name) for name in ("displacement", "error", "velocity", "force", "side"))
+        columns = (motion.over(name) for name in ("transmission_error", "error", "velocity", "force", "side"))
         for phase, s, e, velocity, force, side in zip(motion.phases, *columns):
             yield HistoryRow(
                 motion.speed, motion.way, float(phase), 1e3 * float(phase) * motion.period, UM * float(s),

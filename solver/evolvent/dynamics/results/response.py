@@ -115,9 +115,22 @@ class DriveSummary:
     """Its estimated error by the mesh and by the spacing of positions; null where there is no coarse companion
     (`output.error_bars`)."""
     natural_speed_rpm: float
-    """Of the pinion, at which the mesh frequency is the natural one at that stiffness."""
+    """Of the pinion, at which the mesh frequency is the natural one at that stiffness, on rigid or elastic bodies."""
     natural_speed_rpm_error: float
     """Its estimated error by that of the stiffness."""
+    bodies: str
+    """elastic: gear bodies give way with their inertia where it is; rigid: all inertia is at the bores."""
+    rigid_natural_speed_rpm: float
+    """The natural speed with all inertia at the bores: too low, the more the smaller these are. That of
+    natural_speed_rpm where bodies are rigid."""
+    moving_mass_kg: float
+    """Mass of the one degree of freedom: m_e, with elastic bodies more by what they lag behind."""
+    moving_stiffness_N_per_um: float
+    """Mean stiffness in motion: that above, with elastic bodies stiffer, as their own inertia holds them and not their
+    bores."""
+    body_frequency_Hz: float | None
+    """Lowest frequency of the bodies' own vibration on the mesh, which the one degree of freedom leaves out: where a
+    low mesh harmonic has it the motion is larger than computed. Null for rigid bodies."""
     static_force_N: float
     """Torque over base radius."""
     damping_N_s_per_mm: float
@@ -219,8 +232,10 @@ def summary(
     pinion, wheel = settings.inertias
     folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
     return DriveSummary(
-        1e3 * drive.model.mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness,
-        1e-3 * errors.mean_stiffness, drive.natural_speed, errors.natural_speed, drive.model.load,
+        1e3 * drive.equivalent_mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness,
+        1e-3 * errors.mean_stiffness, drive.natural_speed, errors.natural_speed,
+        "rigid" if settings.bodies is None else "elastic", drive.rigid_natural_speed, 1e3 * drive.model.mass,
+        1e-3 * drive.moving_stiffness, drive.body_frequency if settings.bodies is not None else None, drive.model.load,
         drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
         settings.damped_apart, settings.ground_damping_ratio, drive.natural_speed * drive.teeth / 60.0, folds,
         jumps(drive, swept.up), errors.jumps["up"],

@@ -100,9 +100,16 @@ def vibration_errors(own: Vibration, others: Sequence[OtherVibration], mean_stif
         {way: _error(own, others, way, lambda drive, each: each.largest_force / drive.model.load) for way in WAYS},
         {way: tuple(map(float, _jump_errors(speeds, others, way))) for way, speeds in jumps.items()},
         mean_stiffness,
-        0.5 * mean_stiffness / own.drive.mean_stiffness * own.drive.natural_speed,  # it is in proportion to √k
+        _natural_speed_error(own.drive, mean_stiffness),
         tuple(sentence for other in others for sentence in _said(own, other)),
     )
+
+
+def _natural_speed_error(drive: Drive, mean_stiffness: float) -> float:
+    """[r/min], of an error of the mean stiffness [N/mm]. The speed is in proportion to the root of the stiffness in
+    motion, whose compliance is off by as much as that in statics."""
+    relative = mean_stiffness * drive.moving_stiffness / drive.mean_stiffness**2
+    return 0.5 * relative * drive.natural_speed
 
 
 def mean_stiffness_error(

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from evolvent.dynamics.gear_inertia import TONNE_PER_MM3
+from evolvent.dynamics.gear_inertia import TONNE_PER_MM3, refuse_less_than_the_body
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.dynamics.modes.mode_meshes import mode_mesh
 from evolvent.dynamics.pair_model import DriveSettings
@@ -16,12 +16,9 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.input_checks import Words, refuse
 
 RESOLVED = 0.25
 """Of the frequency at which time steps sample: modes up to it have four steps a period, others answer at once."""
-ROUNDING = 1e-3
-"""By which the meshed body may have more inertia than the drawn one."""
 LEAST = 1
 """Modes of each harmonic. Without any, inertia stays at the bore, and the pair's own frequency is a lower one: by
 6 % of a spur pair (docs/he2022.md)."""
@@ -60,7 +57,10 @@ def driven_pair(
     on, u, torque = model.load.on, model.pair.ratio, model.load.torque
     pinion, wheel = (inertia / model.width_factor for inertia in settings.inertias)
     for member, inertia in zip(Member, (pinion, wheel)):
-        _refuse_less_than_the_body(member, inertia, modes[member], model.width_factor)
+        if modes[member].count:
+            body = modes[member].moment_of_inertia
+            width = model.width_factor
+            refuse_less_than_the_body(member, width * inertia, width * body, "transient.modes_per_harmonic = 0")
     torques = (torque, torque * u) if on == 0 else (torque / u, torque)  # but for friction
     drive = Drive.free(u, (pinion, wheel), torques)
     if constant_speed:
@@ -69,17 +69,6 @@ def driven_pair(
     stiffness = float(np.mean([result.stiffness for result in static]))
     critical = 2.0 * np.sqrt(stiffness * drive.inertia) / pair.lever
     return replace(pair, mesh_damping=settings.damping_ratio * critical)
-
-
-def _refuse_less_than_the_body(member: Member, inertia: float, gear: GearModes, width: float) -> None:
-    """inertia: [t·mm²; t·mm in 2D]. width: of the face in 2D [mm], else 1."""
-    if gear.count and inertia < (1.0 - ROUNDING) * gear.moment_of_inertia:
-        body, given = (f"{1e-3 * width * value:.4g} kg m²" for value in (gear.moment_of_inertia, inertia))
-        refuse(
-            f"dynamics.{member.label}_inertia_kg_m2",
-            f"at least that of the meshed body, {body}, whose natural modes move all of its mass", Words(given),
-            "delete the key for the body's own, enlarge the bore, or take transient.modes_per_harmonic = 0",
-        )  # fmt: skip
 
 
 def loaded_as_static(pair: MovingPair, static: Sequence[PositionResult]) -> MovingPair:

@@ -34,6 +34,7 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
     return [
         ("moment of inertia", "I", "kg·m²", tuple(f"{1e-3 * each:.4g}" for each in settings.inertias)),
         ("equivalent mass along the line of action", "m_e", "kg", (f"{1e3 * mass:.4g}",)),
+        ("gear bodies", "", "", (section.bodies,)),
         ("damping ratio", "ζ", "", (f"{settings.damping_ratio:g}",)),
         ("backlash along the line of action", "j", "µm", (f"{1e3 * settings.backlash:.4g}" if named else NOBODYS,)),
         ("  lacking for unloaded errors", "", "µm", (f"{1e3 * lacking_room(problem, count, settings):.3g}",)),

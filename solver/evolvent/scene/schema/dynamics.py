@@ -79,6 +79,13 @@ class DynamicsSection(SceneSection):
         'give "tangent" or "secant" for a force linear in the deflection, "force_surface" for the computed one',
         default="force_surface",
     )
+    bodies: Literal["elastic", "rigid"] = key(
+        "the gear bodies: they give way with their inertia where it is, or they are rigid, with all inertia at the "
+        "bores and what gives way between bore and mesh in front of it, so that a small bore has too low a natural "
+        "speed",
+        '"elastic" or "rigid"',
+        default="rigid",
+    )
     torque_percents: tuple[float, ...] = key(
         "torques of the force surface, in percent of load.torque_Nm; beyond the heaviest it goes on straight",
         f"a list of up to 30 {PERCENTS}",

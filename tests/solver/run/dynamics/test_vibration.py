@@ -47,7 +47,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With the force surface."""
     folder, one = tmp_path_factory.mktemp("dynamics"), scene()
     assert one.dynamics is not None
-    (said,) = run_dynamics(one, folder, quiet=True)
+    rigid, said = run_dynamics(one, folder, quiet=True)
+    assert rigid.startswith('dynamics.bodies = "rigid": all inertia is at the bores')
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")
     return folder
 
@@ -167,7 +168,7 @@ def test_settings_follow_from_the_gears() -> None:
 def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
     """That of the reference centre distance, none: the key and the static deflection are named."""
     one = scene("dynamics.backlash_um=0", 'dynamics.mesh="secant"', "dynamics.speeds=2")
-    (said,) = run_dynamics(one, tmp_path, quiet=True)
+    _, said = run_dynamics(one, tmp_path, quiet=True)
     known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
     deflection = known["static_force_N"] / known["mean_stiffness_N_per_um"]
     assert said.startswith(f"dynamics.backlash_um: found 0 µm, less than the static deflection of {deflection:.3g} µm")

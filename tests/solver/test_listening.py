@@ -24,7 +24,7 @@ from tests.support.synthetic_run import synthetic_run
 COMMANDS = {str(each.name or each.callback.__name__): str(each.epilog) for each in app.registered_commands
             if each.callback is not None}  # fmt: skip
 """Name -> the end of its help, with examples."""
-PROCESSES = {"study": 2}
+PROCESSES = {"study": 3}
 """Command -> how many processes start MPI, where it is not one: watched until all have."""
 
 
@@ -59,11 +59,7 @@ def _no_settings_of_mpi(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "command",
-    [pytest.param(name, marks=pytest.mark.xfail(name == "study", reason="each worker of Dask's has an HTTP server"))
-     for name in COMMANDS],
-)  # fmt: skip
+@pytest.mark.parametrize("command", COMMANDS)
 def test_command_listens_on_no_network(command: str, folder: Path) -> None:
     """From its start until a second after MPI's, or to its end: neither the process nor one that it starts listens
     beyond loopback."""

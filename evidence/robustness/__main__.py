@@ -1,7 +1,7 @@
 """`python -m evidence.robustness [PART] [--out docs]`: measures a part, writes OUT/stress.md.
 
-PART: matrix, scenes, levels, wear, dynamics, independence, faults, malformed, or all, the default. Each keeps its piece of the
-page in OUT/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT`, `level-seeds ...`,
+PART: matrix, scenes, levels, wear, dynamics, independence, faults, malformed, or all, the default. Each keeps its piece
+of the page in OUT/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT`, `level-seeds ...`,
 `wear-seeds ...` and `drive-seeds ...` are the processes that `scenes`, `levels`, `wear` and `dynamics` start.
 """
 

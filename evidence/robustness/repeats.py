@@ -154,7 +154,7 @@ def measured(name: str, out: Path) -> RepeatRow:
 def said(docs: Path) -> str:
     """The table of docs/checks.md. Raises ValueError where nothing was measured."""
     if not (rows := TABLE.read(docs / KEPT)):
-        raise ValueError(f"{docs}: wanted {KEPT}, found none; `python -m evidence.robustness.repeats --out DIR` writes it")
+        raise ValueError(f"{docs}: wanted {KEPT}, found none; `python -m evidence.robustness.repeats --out DIR` has it")
     return TABLE.markdown(rows)
 
 

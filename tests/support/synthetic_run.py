@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ def synthetic_run(*overrides: str, file: str = "demos/yang2022.toml") -> RunData
     return run_data(scene, shapes, synthetic_sweep(scene, flank))
 
 
-def resolved_slices(*columns: Floats) -> Slices:
+def resolved_slices(*columns: Any) -> Slices:
     """Slices on infinitely fine flanks without relief. columns: all others, in the order of `Slices`."""
     count = len(columns[0])
     no = np.zeros(count, dtype=bool)

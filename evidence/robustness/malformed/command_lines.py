@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import typer.main
 
@@ -77,7 +78,7 @@ def command_lines() -> tuple[CommandLine, ...]:
     return tuple(CommandLine(name, tuple(map(_parameter, each.params))) for name, each in registered.items())
 
 
-def _parameter(registered: typer.models.ParameterInfo) -> Parameter:
+def _parameter(registered: Any) -> Parameter:
     """A parameter as Typer keeps it."""
     long = [name for name in registered.opts if name.startswith("--")]
     flag = bool(getattr(registered, "is_flag", False))

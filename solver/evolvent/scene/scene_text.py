@@ -80,7 +80,7 @@ def _require_short_keys(text: str, kind: FileKind) -> None:
     for part, end in zip(parts[::2], parts[1::2]):
         if end in "=]" and part.count(".") > DEEPEST_KEY:
             found, allowed = f"a key of {part.count('.') + 1:,} parts", f"keys of up to {DEEPEST} parts"
-            raise SceneError([InputProblem(kind.name, found, allowed, f"see the documentation for the keys; {kind.example}")])
+            raise SceneError([InputProblem(kind.name, found, allowed, f"see docs for the keys; {kind.example}")])
 
 
 def _no_toml(text: str, error: Exception, kind: FileKind) -> InputProblem:
@@ -142,7 +142,7 @@ def apply_override(values: dict[str, Any], override: str) -> None:
     name, equals, text = override.partition("=")
     names = [part.strip() for part in name.split(".")]
     if not name.isprintable():  # bytes that are no UTF-8, control characters
-        found, allowed = f"a key with {ascii(name)}", "a key of letters, digits and underscores"
+        found, allowed = f"a key with {name!a}", "a key of letters, digits and underscores"
         raise SceneError([InputProblem("--set", found, allowed, "write for example --set load.torque_Nm=300")])
     if not equals or not all(names) or len(names) > DEEPEST:
         remedy = "write for example --set load.torque_Nm=300"

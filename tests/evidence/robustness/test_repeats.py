@@ -28,7 +28,8 @@ def test_numbers_of_tables_and_summaries_are_figures(tmp_path: Path) -> None:
 
 
 def test_difference_is_relative_to_the_largest_value(tmp_path: Path) -> None:
-    """Forces of 50 and 51 N beside one of 100 N: a hundredth; loads of 50 and 51 beside 8: a fiftieth. A table with a row less cannot be compared."""
+    """Forces of 50 and 51 N beside one of 100 N: a hundredth; loads of 50 and 51 beside 8: a fiftieth. A table with a
+    row less cannot be compared."""
     one, other = (figures(run_folder(tmp_path / str(force), force)) for force in (50.0, 51.0))
     found = differences([one, other])
     assert found["teeth.csv: force_N"] == 0.01 and found["summary.json: frictions.load"] == 0.02

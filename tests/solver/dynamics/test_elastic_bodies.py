@@ -87,5 +87,5 @@ def test_static_displacement_is_that_between_the_bores() -> None:
 
 def test_bodies_softer_than_the_mesh_are_refused() -> None:
     """Shapes that give way more than the whole mesh, with the key that leaves them out."""
-    with pytest.raises(TooSoftBodies, match='dynamics.bodies = "rigid"'):
+    with pytest.raises(TooSoftBodies, match=r'dynamics\.bodies = "rigid"'):
         drive(PAIR, excitation(), LOAD, settings(1e9))

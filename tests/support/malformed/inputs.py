@@ -8,6 +8,8 @@ import numpy as np
 
 from tests.support.scene_texts import HE
 
+MANY_PARTS = b".".join([b"a"] * 9000)
+
 # a scene file's bytes; what was found and a part of the remedy
 SCENE_FILES: dict[str, tuple[bytes, str, str]] = {
     "UTF-16": (HE.encode("utf-16"), "text in UTF-16", "save the file as UTF-8"),
@@ -33,10 +35,10 @@ SCENE_FILES: dict[str, tuple[bytes, str, str]] = {
     "XML": (b"<pair normal_module_mm='3'/>\n", "no TOML", "mend that line"),
     "INI's remarks": (HE.encode() + b"; remark\n", "no TOML", "mend that line"),
     "merge marks": (b"<<<<<<< HEAD\n" + HE.encode(), "no TOML", "mend that line"),
-    "key of thousands of parts": (b".".join([b"a"] * 9000) + b" = 1\n" + HE.encode(), "a key of 9,000 parts", "the keys"),
-    "section of thousands of parts": (HE.encode() + b"[" + b"a.".join([b""] * 9000) + b"a]\n", "a key of 9,000", "the keys"),
+    "key of thousands of parts": (MANY_PARTS + b" = 1\n" + HE.encode(), "a key of 9,000 parts", "the keys"),
+    "section of thousands of parts": (HE.encode() + b"[" + MANY_PARTS + b"]\n", "a key of 9,000 parts", "the keys"),
     "key of thousands of parts within": (
-        HE.encode() + b"x = {b = 1, " + b".".join([b"a"] * 9000) + b" = 1}\n", "a key of 9,000", "the keys",
+        HE.encode() + b"x = {b = 1, " + MANY_PARTS + b" = 1}\n", "a key of 9,000 parts", "the keys",
     ),
     "gmsh": (b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "no TOML", "mend that line"),
 }
@@ -181,7 +183,7 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "check: order true": (["check", SCENE, "--set", "mesh.order=true"], "mesh.order", "true", "give 1 or 2"),
     "check: torque of rounding": (["check", SCENE, "--set", "load.torque_Nm=1e-300"], "load.torque_Nm", "1e-300", ""),
     "check: key of broken bytes": (["check", SCENE, "--set", "\udcff=1"], "--set", "\\udcff", "write for example"),
-    "check: key of control characters": (["check", SCENE, "--set", "load.\x1b=1"], "--set", "\\x1b", "write for example"),
+    "check: key of control characters": (["check", SCENE, "--set", "load.\x1b=1"], "--set", "\\x1b", "write for"),
     "check: empty picture": (["check", SCENE, "--out", ""], "--out", "an empty text", "write --out teeth.png"),
     "loads: a name too long": (["loads", SCENE, "--out", "n" * 5000], "--out", "name too long", "name another one"),
     "check: broken bytes": (["check", SCENE, "--set", 'title="\udcff"'], "title", "", "give a text"),

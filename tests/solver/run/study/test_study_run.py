@@ -143,8 +143,8 @@ def test_what_fails_stands_in_the_table(tmp_path: Path, computed: list[str]) -> 
 
 
 def test_nothing_computed(tmp_path: Path, computed: list[str]) -> None:
-    """Where the values of all scenes are refused the study ends with an error of its input, and nothing is written; where
-    all scenes fail, with one of its results."""
+    """Where the values of all scenes are refused the study ends with an error of its input, and nothing is written;
+    where all scenes fail, with one of its results."""
     with pytest.raises(InputError, match=r"all of its 2 scenes are refused.*load\.torque_Nm: found -1"):
         run(tmp_path, FAILING.replace(", 100.0", ", -2.0"))
     assert not (tmp_path / "out").exists()

@@ -162,7 +162,8 @@ def test_what_a_solved_pitch_adds_to_a_passing_hertzian_pressure() -> None:
     pair, grid_, positions = study.model.pair, study.grids[0], [each.contact for each in state.positions]
     path = np.concatenate([each.roll_distance for each in positions])
     places, which = np.unique(np.round(path, 9), return_inverse=True)
-    loads = np.bincount(which.reshape(-1), np.concatenate([each.weights * each.pressure for each in positions]))
+    forces = np.concatenate([each.weights * each.pressure for each in positions])
+    loads: Floats = np.bincount(which.reshape(-1), forces).astype(np.float64)
     modulus = contact_modulus(*(body.material for body in study.model.bodies))
     wanted = over_hats(grid_, lambda u: passing_hertz(pair, Member.PINION, u, (places, loads), modulus))
     nominal = [replace(each, sliding=(1.0 + 1.0 / pair.ratio) * each.roll_distance) for each in positions]

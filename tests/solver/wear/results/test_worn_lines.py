@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any, cast
 
 from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.run.output import last_lines
@@ -41,6 +42,6 @@ def test_titles_say_under_which_load_a_pair_wears() -> None:
     assert running.dynamics is not None and running.dynamics.operating_rpm is not None
     assert load_words(running) == f"under the mesh force of the vibration at {running.dynamics.operating_rpm:g} r/min"
     assert load_words(load_scene("demos/he2022.toml", WEAR)) == "under 170 N·m on the pinion"
-    rows = [VibrationRow(**{name: 1.0 for name in VibrationRow.__dataclass_fields__}) for _ in range(2)]
+    rows = [VibrationRow(**dict.fromkeys(VibrationRow.__dataclass_fields__, cast(Any, 1.0))) for _ in range(2)]
     title = vibration_over_cycles(rows, 3000.0, "170 N·m on the pinion").texts[0].get_text()
     assert title == "Vibration at 3000 r/min under 170 N·m on the pinion, as the pair wears"

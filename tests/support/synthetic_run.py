@@ -63,7 +63,7 @@ def resolved_slices(*columns: Any) -> Slices:
     """Slices on infinitely fine flanks without relief. columns: all others, in the order of `Slices`."""
     count = len(columns[0])
     no = np.zeros(count, dtype=bool)
-    return Slices(*columns, facet=np.zeros((count, 2)), kink=no, narrow=no)
+    return Slices(*columns, np.zeros((count, 2)), no, no)
 
 
 def steep_run(*overrides: str) -> RunData:

@@ -63,7 +63,8 @@ def resolved_slices(*columns: Any) -> Slices:
     """Slices on infinitely fine flanks without relief. columns: all others, in the order of `Slices`."""
     count = len(columns[0])
     no = np.zeros(count, dtype=bool)
-    return Slices(*columns, np.zeros((count, 2)), no, no)
+    every: list[Any] = [*columns, np.zeros((count, 2)), no, no]
+    return Slices(*every)
 
 
 def steep_run(*overrides: str) -> RunData:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -102,6 +103,7 @@ def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: Run) -> None
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="wants openssl, which makes the certificates")
 def test_a_scheduler_with_certificates(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_script: Run) -> None:
     """Scheduler, worker and study with certificates of one authority by Dask's own configuration: all scenes are done.
     A study without is refused."""
@@ -135,7 +137,7 @@ def test_commands_of_the_page(tmp_path: Path) -> None:
     """Scheduler, worker and study as docs/studies.md has them, in the environment's folder of programs, with another
     address and a smaller study: all scenes are done."""
     page = (ROOT / "docs/studies.md").read_text(encoding="utf-8")
-    text = page.partition("<!-- begin scheduler -->")[2].partition("```sh\n")[2].partition("```")[0]
+    text = page.partition("<!-- begin scheduler -->")[2].partition("```text\n")[2].partition("```")[0]
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
     small = {"10.0.0.1": "127.0.0.1", "8786": str(port), "demos/studies/zhang2023_torque.toml":

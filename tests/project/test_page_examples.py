@@ -21,7 +21,7 @@ from tests.support.running.page_commands import NAMES
 from tests.support.running.processes import one_at_a_time
 
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
-LANGUAGES = {"sh", "python", "toml", "text"}
+LANGUAGES = {"sh", "python", "toml", "text", "yaml"}
 SHARED = ("demos", "docs", "Dockerfile")
 COMMANDS = "|".join([*NAMES, "export", "mkdir", "mpirun"])
 

@@ -48,7 +48,7 @@ def writing_to(out: Path, comm: MPI.Comm, checked: Callable[[], T]) -> Iterator[
 
 def require_no_study(out: Path) -> None:
     """Raises FolderError where the folder is that of a study: results of one scene would stand beside its table."""
-    if os.path.exists(out / STUDY):  # False of a name that no file can have, which is refused where it is opened
+    if (out / STUDY).exists():
         raise FolderError(
             f"{out}: found a study ({STUDY}); allowed: a folder without; remedy: --out names another folder; each "
             "scene of the study has a folder below scenes"

@@ -43,13 +43,14 @@ def run_loads(
     comm = MPI.COMM_WORLD
 
     def check() -> None:
-        require_no_study(out)
-        RunFolder(out).require_free([LOADS, f"pictures/{PICTURE}"])
-        for name, each in scenes.items():
-            check_folder(each, out / name, resume, overwrite, source)
-            if resume:  # before the first of them is computed
-                solved = scene_to_solve(each, Archive(out / name, each), resume)
-                resume_point(solved, Archive(out / name, solved), resume)
+        with locked(out):  # a folder that cannot be written is refused here
+            require_no_study(out)
+            RunFolder(out).require_free([LOADS, f"pictures/{PICTURE}"])
+            for name, each in scenes.items():
+                check_folder(each, out / name, resume, overwrite, source)
+                if resume:  # before the first of them is computed
+                    solved = scene_to_solve(each, Archive(out / name, each), resume)
+                    resume_point(solved, Archive(out / name, solved), resume)
 
     on_first(comm, check)
     gears = LoadList([gear_problem(each) for each in scenes.values()])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -35,11 +36,11 @@ def plot_folder(out: Path) -> Drawn:
 
 
 def _require_finished(out: Path) -> None:
-    """Raises FolderError where there is nothing to draw."""
-    if any((out / name).is_file() for name in DRAWN_AGAIN):
+    """Raises FolderError where there is nothing to draw. os.path, unlike pathlib, takes names that no file can have."""
+    if any(os.path.isfile(out / name) for name in DRAWN_AGAIN):
         return
-    missing = f"no {RUN} in it, and no {TRANSIENT}" if out.is_dir() else "no such directory"
-    begun = " --resume" if (out / "results/state.npz").exists() else ""
+    missing = f"no {RUN} in it, and no {TRANSIENT}" if os.path.isdir(out) else "no such directory"
+    begun = " --resume" if os.path.exists(out / "results/state.npz") else ""
     raise FolderError(
         f"{out}: found {missing}; allowed: the --out of a finished run or transient; remedy: run `evolvent run "
         f"SCENE.toml --out {out}{begun}` first"

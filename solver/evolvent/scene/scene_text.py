@@ -32,7 +32,7 @@ LARGEST = 1
 """Largest size of a scene file [MB]."""
 DEEPEST = 8
 """Largest nesting depth of tables and lists; a scene needs three."""
-DEEPEST_KEY = 100
+DEEPEST_KEY = 1000
 """Largest number of dots in a key: tomllib takes hours over a key of half a million parts."""
 UNDECODABLE = (tomllib.TOMLDecodeError, ValueError, RecursionError)
 """Exceptions of tomllib: ValueError for integers of more than 4300 digits, RecursionError for deep nesting."""

@@ -208,6 +208,7 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "plot: nothing": (["plot"], "DIR", "nothing", "where a run has put its results"),
     "plot: empty": (["plot", ""], "DIR", "an empty text", "where a run has put its results"),
     "plot: no such folder": (["plot", "{folder}/no"], "{folder}/no", "no such directory", "of a finished run"),
+    "plot: a name too long": (["plot", "n" * 5000], "n" * 5000, "no such directory", "of a finished run"),
     "plot: a file": (["plot", SCENE], SCENE, "no such directory", "the --out of a finished run"),
     "plot: another folder": (["plot", "{folder}"], "{folder}", "no summary.json in it", "of a finished run"),
     "plot: two folders": (["plot", "{folder}", "b"], "arguments", '"b"', "leave it out"),

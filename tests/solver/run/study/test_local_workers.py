@@ -135,9 +135,10 @@ def test_gears_that_cannot_be_condensed(tasks: list[SceneTask]) -> None:
 HOLDING = """
 import sys, ctypes, os
 from evolvent.run.study.worker_process import end_with
+parent = os.getpid()
 child = os.fork()
 if child == 0:
-    end_with(os.getppid())
+    end_with(parent)
     ctypes.PyDLL(None).sleep(600)  # a library that does not return to Python
 print(child, flush=True)
 sys.stdin.read()

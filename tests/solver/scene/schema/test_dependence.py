@@ -31,16 +31,22 @@ HANDED_ON = {
 }
 """Keys that nothing before the computation depends on, and the room that is handed their values as they are, or another
 reason."""
+DEVIATIONS = ["dynamics.base_pitch_deviation_um=6", "dynamics.profile_deviation_um=6"]
 BESIDE = {
     "pinion.protuberance_um": ["wheel.addendum_coefficient=0.75"],
     "wheel.protuberance_um": ["pinion.addendum_coefficient=0.75"],
-    "dynamics.tolerance_class": ["pinion.tip_relief_um=12", "wheel.tip_relief_um=12"],
+    "dynamics.base_pitch_deviation_um": ["dynamics.profile_deviation_um=6"],
+    "dynamics.profile_deviation_um": ["dynamics.base_pitch_deviation_um=6"],
+    "dynamics.tolerance_class": ["pinion.tip_relief_um=12", "wheel.tip_relief_um=12", *DEVIATIONS],
+    "dynamics.flank_surface": DEVIATIONS,
+    "dynamics.contact_endurance_MPa": DEVIATIONS,
     "strength.tolerance_class": ["pinion.addendum_coefficient=1.3", "wheel.addendum_coefficient=1.3",
                                  "pinion.dedendum_coefficient=1.55", "wheel.dedendum_coefficient=1.55",
                                  "pinion.teeth=50", "wheel.teeth=60", "pair.centre_distance_mm=165.1"],
 }  # fmt: skip
-"""Key -> settings beside which it counts: room for the fillets of a protuberance, teeth with tip relief, a contact
-ratio above 2.05. Tolerance classes are data of gears, and may stand where the standard does not ask for them."""
+"""Key -> settings beside which it counts: room for the fillets of a protuberance, both deviations without which there
+is no K_v, teeth with tip relief, a contact ratio above 2.05. Tolerance classes are data of gears, and may stand where the
+standard does not ask for them."""
 
 
 REFUSED_BELOW = {"pinion.support_offset_mm", "wheel.support_offset_mm"}

@@ -45,8 +45,8 @@ BESIDE = {
                                  "pinion.teeth=50", "wheel.teeth=60", "pair.centre_distance_mm=165.1"],
 }  # fmt: skip
 """Key -> settings beside which it counts: room for the fillets of a protuberance, both deviations without which there
-is no K_v, teeth with tip relief, a contact ratio above 2.05. Tolerance classes are data of gears, and may stand where the
-standard does not ask for them."""
+is no K_v, teeth with tip relief, a contact ratio above 2.05. Tolerance classes are data of gears, and may stand where
+the standard does not ask for them."""
 
 
 REFUSED_BELOW = {"pinion.support_offset_mm", "wheel.support_offset_mm"}

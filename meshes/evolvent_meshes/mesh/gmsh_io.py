@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import os
 import re
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -37,7 +39,10 @@ def gmsh_model(name: str) -> Iterator[None]:
     """Context with a new gmsh model without messages, removed at its end; also inside a gmsh session of the caller."""
     owns_session = not gmsh.isInitialized()
     if owns_session:
+        closed_pipe = signal.getsignal(signal.SIGPIPE)
         gmsh.initialize(["gmsh"], readConfigFiles=False, interruptible=False)
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGPIPE, closed_pipe)  # gmsh has a closed pipe end the process, without a word
     terminal = gmsh.option.getNumber("General.Terminal")
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.model.add(name)

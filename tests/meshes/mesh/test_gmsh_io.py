@@ -1,5 +1,6 @@
 """gmsh files to arrays and back: node order, groups, leftovers and clear errors."""
 
+import signal
 from pathlib import Path
 
 import gmsh
@@ -11,6 +12,7 @@ from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from evolvent_meshes.mesh.soundness import check_mesh
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.meshes.overlapping_groups import write_overlapping
+from tests.support.running.fresh_process import python
 
 BLOCKS = [
     rectangle(2, 1, 4, 3, order=2),
@@ -100,6 +102,7 @@ def test_control_points_of_curves_are_no_nodes() -> None:
 def test_gmsh_session_of_the_caller_is_unchanged() -> None:
     """Reading a file inside a user's gmsh session neither ends it nor changes its model."""
     gmsh.initialize(["gmsh"], readConfigFiles=False, interruptible=False)
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # as Python has it: other tests write to closed pipes
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.model.add("mine")
@@ -214,3 +217,24 @@ def test_commands_beside_a_mesh_are_not_run(tmp_path: Path, monkeypatch: pytest.
     with pytest.raises(MeshError, match="MSH format"):
         read_msh(tmp_path / "script.msh")
     assert not list(tmp_path.glob("by_*"))
+
+
+CLOSED_PIPE = """
+import os
+from evolvent_meshes.mesh.gmsh_io import gmsh_model
+with gmsh_model("mesh"):
+    pass
+reader, writer = os.pipe()
+os.close(reader)
+try:
+    os.write(writer, b"x")
+except BrokenPipeError:
+    print("an error")
+"""
+
+
+def test_closed_pipes_stay_errors() -> None:
+    """After a mesh by gmsh, which resets the signal, a pipe that nobody reads is an error as before, which a program can
+    handle: not the end of the process without a word."""
+    done = python(CLOSED_PIPE)
+    assert (done.returncode, done.stdout) == (0, "an error\n"), done.stderr

@@ -234,7 +234,7 @@ except BrokenPipeError:
 
 
 def test_closed_pipes_stay_errors() -> None:
-    """After a mesh by gmsh, which resets the signal, a pipe that nobody reads is an error as before, which a program can
-    handle: not the end of the process without a word."""
+    """After a mesh by gmsh, which resets the signal, a pipe that nobody reads is an error as before, which a program
+    can handle: not the end of the process without a word."""
     done = python(CLOSED_PIPE)
     assert (done.returncode, done.stdout) == (0, "an error\n"), done.stderr

@@ -91,7 +91,10 @@ def test_stiffness_is_per_face_width(run: RunData) -> None:
 def test_charted_flanks_have_no_secant_stiffness(run: RunData, tmp_path: Path) -> None:
     """The same results of a pair with a charted pinion: what is missing of the flank is part of the transmission error
     but no deflection, so that no secant is given, and JSON has null; the tangent is there all the same."""
-    pinion = run.scene.pinion.model_copy(update={"flank_csv": "worn.csv"})
+    gear, chart = run.pair.pinion, tmp_path / "worn.csv"
+    diameters = np.linspace(gear.root_form_diameter - 1.0, gear.tip_diameter + 1.0, 20)
+    chart.write_text("diameter_mm,depth_um\n" + "".join(f"{diameter},1.0\n" for diameter in diameters))
+    pinion = run.scene.pinion.model_copy(update={"flank_csv": str(chart)})
     charted = replace(run, scene=run.scene.model_copy(update={"pinion": pinion}))
     assert all(np.isfinite(row.secant_stiffness_N_per_mm_um) for row in friction_rows(run))
     assert all(np.isnan(row.secant_stiffness_N_per_mm_um) for row in friction_rows(charted))

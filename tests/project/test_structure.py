@@ -181,14 +181,14 @@ def test_rooms_and_files_are_small(tree: str) -> None:
 
 
 def test_what_is_too_large_is_found(tmp_path: Path) -> None:
-    """A room with 13 files, a level with 10 rooms and a file with 301 lines are named."""
+    """A room with a file too many, a level with a room too many and a file with 301 lines are named."""
     for number in range(FILES + 1):
         (tmp_path / f"file_{number}.py").write_text("\n" * (LINES + (number == 0)))
     for number in range(BELOW + 1):
         (tmp_path / f"room_{number}").mkdir()
         (tmp_path / f"room_{number}" / "file.py").touch()
     assert sizes(tmp_path) == [
-        f"{tmp_path}: 13 files", f"{tmp_path}: 10 rooms", f"{tmp_path / 'file_0.py'}: 301 lines",
+        f"{tmp_path}: {FILES + 1} files", f"{tmp_path}: {BELOW + 1} rooms", f"{tmp_path / 'file_0.py'}: 301 lines",
     ]  # fmt: skip
 
 

@@ -23,7 +23,7 @@ from evidence.processes import Command, run
 from evidence.tables import Column, Table, write_rows
 
 KERNELS = ("Haswell", "Sandybridge", "Nehalem")
-"""Of OpenBLAS, for processors of 2013, 2011 and 2008; a newer processor runs them all."""
+"""Kernels of OpenBLAS, for processors of 2013, 2011 and 2008; a newer processor runs them all."""
 SHIFTS = (0, 4112)
 """Bytes allocated before all else, no multiple of a cache line."""
 SHIFTED = """import ctypes, sys
@@ -61,7 +61,7 @@ class RepeatRow:
     figure: str
     """The figure that has it."""
     bar: float
-    """The same of error bars, which are differences of two solutions; NaN where there are none."""
+    """Largest such difference of an error bar, which is a difference of two solutions; NaN without error bars."""
 
 
 TABLE = Table(

@@ -71,7 +71,7 @@ def _parents() -> dict[int, int]:
 
 
 def _words(process: int) -> list[str]:
-    """Its command line; empty where it has ended."""
+    """Command line of a process; empty where the process has ended."""
     with suppress(OSError):
         return Path(f"/proc/{process}/cmdline").read_text(errors="replace").split("\0")[:-1]
     return []

@@ -11,6 +11,7 @@ from typing import Annotated, Any, cast
 import typer
 
 from evolvent import __version__
+from evolvent.scene.schema.dynamics import MOST_TORQUES
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.output import SKIP_NAMES
 
@@ -18,8 +19,6 @@ MOST_DIGITS, MOST_SHOWN = 9, 40
 """Digits of a number of worker processes; characters of one that is none in a message."""
 MOST_PERCENT = 1000.0
 """Largest part of a scene's torque in a load list."""
-MOST_PERCENTS = 30
-"""Torques of such a list: as many as dynamics.torque_percents takes; each costs as much as a run of all positions."""
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
 """What typer raises for an option or argument that it cannot use. Typer has no public name for this class."""
 EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh", "FILE.png": "teeth.png"}
@@ -109,9 +108,9 @@ def given_count(text: str) -> int:
 def given_percents(text: str) -> tuple[float, ...]:
     """Percentages from the command line, "5,10,100". Raises typer.BadParameter."""
     parts = text.split(",")
-    if len(parts) > MOST_PERCENTS:
+    if len(parts) > MOST_TORQUES:
         raise typer.BadParameter(
-            f"--percent: found {len(parts)} numbers; allowed: up to {MOST_PERCENTS}, each of which costs a run; "
+            f"--percent: found {len(parts)} numbers; allowed: up to {MOST_TORQUES}, each of which costs a run; "
             "remedy: write --percent 25,50,100, and what lies between in further calls"
         )
     percents = tuple(given_number(part.strip()) for part in parts)

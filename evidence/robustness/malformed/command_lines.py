@@ -30,7 +30,7 @@ class Parameter:
     """An argument or an option of a command."""
 
     option: str
-    """Its long name, `--out`; empty for an argument."""
+    """Long name of an option, `--out`; empty for an argument."""
     metavar: str
     """What the help calls its value; empty where it is called nothing, and for a flag."""
     required: bool

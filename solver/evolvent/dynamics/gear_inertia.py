@@ -33,12 +33,12 @@ def polar_moment(gear: GearParameters, density: float) -> float:
 
 
 def teeth_moment(gear: GearParameters, density: float) -> float:
-    """The same of the teeth alone, outside the root circle."""
+    """Moment of inertia [t·mm²] of the teeth alone, outside the root circle. density: [kg/m³]."""
     return float(TONNE_PER_MM3 * density * _disc_moment(gear, _section(gear), gear.root_diameter))
 
 
 def solid_moment(gear: GearParameters, density: float) -> float:
-    """The same of a solid disc of the tip diameter and the face width."""
+    """Moment of inertia [t·mm²] of a solid disc of tip diameter and face width. density: [kg/m³]."""
     return float(TONNE_PER_MM3 * density * gear.face_width * np.pi * gear.tip_diameter**4 / 32.0)
 
 

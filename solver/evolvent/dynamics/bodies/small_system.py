@@ -17,8 +17,7 @@ import scipy.linalg as la
 from evolvent_meshes.arrays import Floats
 
 RIGID = 1e-10
-"""Of the largest ω²: below it a motion deforms nothing."""
-
+"""Part of the largest ω² below which a mode counts as rigid."""
 MESHING = 1e-2
 """Part of a motion's elastic energy in the mesh from which on the mesh excites it."""
 

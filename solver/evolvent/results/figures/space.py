@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from evolvent.results.drawing.animations import frame, gif
-from evolvent.results.drawing.style import ABOVE, FAINT, PINION, PRESSURE_MAP, sheet
+from evolvent.results.drawing.style import ABOVE, FAINT, OVER_KINK, PINION, PRESSURE_MAP, sheet
 from evolvent.results.engagement import Engagement, engagement
 from evolvent.results.figures.flank import pressure_top
 from evolvent.results.figures.scene3d import gear_picture, pair_picture
 from evolvent.results.figures.stress import STRESS, TOOTH_ANGLE
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import position_row
+from evolvent.results.tables.summary_rows import PositionRow
 from evolvent_meshes.gears.member import Member
 
 
@@ -28,10 +29,8 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     k = most_loaded_position(run, index)
     result, top = run.positions[k][index].result, pressure_top(run, index)
     teeth = run.positions[k][index].teeth
-    peak = position_row(run, run.positions[k][index]).max_pressure_MPa
     load = f"{run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}"
-    largest = f", at most {peak:.0f} MPa at this position" if np.isfinite(peak) else ""
-    subtitle = f"{load}: {len(teeth)} tooth pairs in contact{largest}"
+    subtitle = f"{load}: {len(teeth)} tooth pairs in contact{_largest(position_row(run, run.positions[k][index]))}"
     subtitle += f" (φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g})."
     figure = sheet(f"{run.scene.title}: pressure on the flanks", subtitle, (12.4, 7.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
@@ -88,6 +87,15 @@ def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: N
         frames.append(_frame(run, index, k, curve, top))
         step()
     return gif(frames)
+
+
+def _largest(row: PositionRow) -> str:
+    """The largest pressure of a position in words, that over the start of a linear relief apart; empty where it is not
+    known."""
+    kink = [f"{row.kink_pressure_MPa:.0f} MPa {OVER_KINK}"] if row.kink_pressure_MPa > 0.0 else []
+    where = "elsewhere" if kink else "at this position"
+    peak = [f"at most {row.max_pressure_MPa:.0f} MPa {where}"] if np.isfinite(row.max_pressure_MPa) else []
+    return "".join(f", {words}" for words in (*kink, *peak))
 
 
 def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:

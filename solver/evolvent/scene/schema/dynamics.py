@@ -10,6 +10,8 @@ from evolvent.scene.schema.errors import NOTHING, InputProblem, shown, validatio
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
 
 MOST_SPEEDS = 5000
+MOST_TORQUES = 30
+"""Largest number of torques of an excitation or a load list; each costs as much as a run of all positions."""
 FASTEST = 1e6
 """Highest speed [r/min]."""
 SPEEDS = f"two rising numbers above 0 up to {FASTEST:g}, in r/min"
@@ -88,9 +90,9 @@ class DynamicsSection(SceneSection):
     )
     torque_percents: tuple[float, ...] = key(
         "torques of the force surface, in percent of load.torque_Nm; beyond the heaviest it goes on straight",
-        f"a list of up to 30 {PERCENTS}",
+        f"a list of up to {MOST_TORQUES} {PERCENTS}",
         "a force of twice the static one is usual near resonance: go on to 200",
-        default=(5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0), max_length=30,
+        default=(5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0), max_length=MOST_TORQUES,
     )  # fmt: skip
     damping_ratio: float = key(
         "damping of the mesh over the critical one, at the mean stiffness with what gives way in series",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,8 @@ from evolvent.results.drawing.offscreen import off_screen
 from evolvent.results.drawing.style import PRESSURE_MAP
 from evolvent.results.fields.flank_field import flank_patch
 from evolvent.results.figures.scene3d import flank_picture
+from evolvent.results.figures.space import _largest
+from evolvent.results.tables.figure_rows import position_row
 from evolvent_meshes.gears.member import Member
 from tests.support.synthetic_run import synthetic_run
 
@@ -32,3 +36,14 @@ def test_colours_are_those_of_the_bar(gear: Member) -> None:
         wanted = 255.0 * np.array(PRESSURE_MAP(share)[:3])
         off = np.abs(image[flank].astype(float) - wanted).max(axis=1)
         assert (off <= LEVELS).mean() > 0.9
+
+
+def test_pressure_over_a_relief_start_is_named_apart() -> None:
+    """A position of which one tooth presses with 900 MPa over a kink: its title says so beside the largest pressure
+    elsewhere. Without kinks there is the largest pressure alone, and nothing where none is known."""
+    run = synthetic_run(file="demos/he2022.toml")
+    row = replace(position_row(run, run.positions[0][0]), max_pressure_MPa=226.0, kink_pressure_MPa=0.0)
+    assert _largest(row) == ", at most 226 MPa at this position"
+    both = replace(row, kink_pressure_MPa=900.0)
+    assert _largest(both) == ", 900 MPa over the start of a linear relief, at most 226 MPa elsewhere"
+    assert _largest(replace(row, max_pressure_MPa=np.nan)) == ""

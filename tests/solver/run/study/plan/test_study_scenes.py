@@ -45,7 +45,7 @@ def test_keys_are_left_out_and_set(tmp_path: Path) -> None:
     """The base scene has tip diameters: without them addendum coefficients may vary, with them all are refused,
     which is said before anything is written."""
     text = f"{HEAD}[set]\nsweep.positions = 7\n[grid]\npinion.addendum_coefficient = [1.2]\n"
-    with pytest.raises(SceneError, match="its scene: .*delete tip_diameter_mm or addendum_coefficient"):
+    with pytest.raises(SceneError, match=r"its scene: .*delete tip_diameter_mm or addendum_coefficient"):
         scenes_of(tmp_path, text)
     (scene,) = scenes_of(tmp_path, f'leave_out = ["pinion.tip_diameter_mm"]\n{text}')
     assert scene.scene is not None

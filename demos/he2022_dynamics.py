@@ -143,7 +143,7 @@ def figures(name: str, swept: Swept) -> Figures:
     return Figures(
         name, mean, natural, mean * (PAPER / natural) ** 2, up, down, 1e3 * float(size.max()), float(swept.speeds[at]),
         largest_force(swept.found) / swept.pair.model.load,
-    )  # fmt: skip
+    )
 
 
 def drawn(swept: dict[str, Swept]) -> Figure:

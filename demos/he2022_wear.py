@@ -52,7 +52,7 @@ FINE = 'mesh.level="fine"', "sweep.positions=40", "output.animation=false"
 QUICK = (
     'mesh.level="quick"', "sweep.positions=20", "output.animation=false", "output.fields=false",
     "output.error_bars=false",
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def compared(study: WornRun, point: PointPassage, coarse: bool) -> list[Compared
         Compared(f"sliding at {here}", "µm", 1e3 * sliding, "2b|ζ|", 1e3 * single_point, local),
         Compared(f"contact at {here} lasts", "°", np.degrees(point.lasts), "Hertz", np.degrees(hertz_lasts), local),
         Compared("worn volume of a pinion tooth", "mm³", volume, "(K/H)∫∫p|v_s| dA dt", last.volumes[0], 1e-6),
-    ]  # fmt: skip
+    ]
 
 
 def check_as_printed(study: WornRun, point: PointPassage) -> None:

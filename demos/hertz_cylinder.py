@@ -92,7 +92,7 @@ class Profile:
 def cylinder_on_block(
     cells: float, order: int = 2, ratio: float = 1.0, first: str = "block", friction: float = 0.0,
     shape: str = "quadrilateral",
-) -> Problem:  # fmt: skip
+) -> Problem:
     """The benchmark with cells of half-width/`cells` on the cylinder and `ratio` times finer ones on the block.
 
     first: "block" or "cylinder", the body that carries the pressure and the normals.
@@ -221,7 +221,7 @@ def main(out: Path = Path("out/hertz_cylinder"), quick: bool = False) -> None:
 def draw(
     path: Path, shown: Solution, profile: Profile, reference: Profile, errors: dict[int, list[Row]], pushed: Profile,
     slip: Slip,
-) -> None:  # fmt: skip
+) -> None:
     """Four panels: the stress, the pressure, the partial slip, the error over the element size."""
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt

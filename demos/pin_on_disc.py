@@ -191,7 +191,7 @@ def check(snapshots: list[Snapshot], straight: bool) -> None:
 def main(
     out: Annotated[Path, typer.Option()] = Path("out/pin_on_disc"), quick: bool = False, straight: bool = False,
     km: float = 10.0, disc: Annotated[float, typer.Option("--disc-mm2-per-N", help="K/H of the disc")] = 0.0,
-) -> None:  # fmt: skip
+) -> None:
     """Compute, check, write table.csv and the pictures."""
     dolfinx_compat.silence_logs()
     snapshots = run(0.8 if quick else 0.4, km, straight, disc)

@@ -23,7 +23,7 @@ from evolvent.scene.scene import load_scene
 SMALL = (
     'mesh.level="quick"', "mesh.elements_per_contact_width=0.7", "contact.friction=[0.07, 0.30]", "sweep.positions=4",
     "output.animation=false",
-)  # fmt: skip
+)
 
 
 def main(out: Path, quick: bool = False) -> None:

@@ -106,7 +106,7 @@ def figures(path: Path, gear: str, torque: float, radius: float, friction: float
     formulas = (
         "equal shares, outer point of double contact (b)", "Pedrero's shares, largest over the path",
         "ISO 6336-3:2019", "ISO 6336-3:2006",
-    )  # fmt: skip
+    )
     bars = [float(row[name]) for row in (tension, compression, at_b) for name in ("stress_MPa", "stress_MPa_error")]
     place = [float(tension[name]) for name in ("tooth_rotation_deg", "tangent_angle_deg")]
     nominal = (float(own[name]["stress_MPa"]) for name in formulas)
@@ -141,13 +141,13 @@ def _column(axes: Axes, rows: list[Figures]) -> None:
         first = [row for row in own if row.rack_tip_radius_modules == TIP_RADII[0]]
         tension, errors = zip(*((row.tension_MPa, row.tension_MPa_error) for row in first))
         axes.errorbar(torque, tension, errors, color=colour, marker="o", ms=4.5, capsize=3,
-                      label=f"finite elements, μ = {μ:g}")  # fmt: skip
+                      label=f"finite elements, μ = {μ:g}")
         for row in own:
             if row not in first:
                 axes.plot(row.torque_Nm, row.tension_MPa, "o", mfc="none", color=colour, ms=5.5)
                 if μ == 0.0:
                     axes.annotate(f"{row.rack_tip_radius_modules:.2f}", (row.torque_Nm, row.tension_MPa),
-                                  (-28, -3), textcoords="offset points", fontsize=8, color=colour)  # fmt: skip
+                                  (-28, -3), textcoords="offset points", fontsize=8, color=colour)
 
 
 if __name__ == "__main__":

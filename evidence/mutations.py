@@ -103,14 +103,14 @@ def failing(tests: Sequence[str], tree: Path) -> tuple[dict[str, str], str]:
         done = subprocess.run(
             command, cwd=tree, env={**os.environ, "PYTHONPATH": python_path(tree), "OMP_NUM_THREADS": "1"},
             capture_output=True, text=True, timeout=PATIENCE * len(tests), check=False,
-        )  # fmt: skip
+        )
         said = _said(report) if report.exists() else {}
     except subprocess.TimeoutExpired:
         return {}, f"not done after {PATIENCE * len(tests):g} s"
     finally:
         report.unlink(missing_ok=True)
     texts_of = {test: [text for case, text in said.items() if case == test or case.startswith(f"{test}[")]
-             for test in tests}  # fmt: skip
+             for test in tests}
     last = (done.stdout + done.stderr).strip().rpartition("\n")[2]
     return {test: texts[0] for test, texts in texts_of.items() if texts}, last
 

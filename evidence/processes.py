@@ -110,7 +110,7 @@ def run(command: Command) -> Cost:
         process = subprocess.Popen(
             [*launcher, *words], cwd=command.folder, env={**environment(), **command.variables}, stdout=log, stderr=log,
             start_new_session=True,
-        )  # fmt: skip
+        )
         try:
             code = process.wait(command.time_limit)
         except subprocess.TimeoutExpired:

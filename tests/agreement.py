@@ -39,7 +39,7 @@ NO_RESULTS = {
     "scene", "versions", "skipped", "ranks", "timings_s", "peak_memory_MB", "seconds", "iterations",
     "newton_iterations", "residual", "balance_error",
     "forces_on_pinion", "forces_on_wheel",  # small differences of nodal forces, which are compared themselves
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
             "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),
             "figures": tutorial.figures(docs),
         },
-    }  # fmt: skip
+    }
     pages = {page: _filled(page, texts) for page, texts in parts.items()}
     whole = "\n\n".join(part.strip() for part in outputs.page()) + "\n"
     return {**pages, docs / "outputs.md": whole, docs / "summary.schema.json": outputs.schema_text()}

@@ -117,7 +117,7 @@ ARRAYS = (
     ("traction_MPa (mu=...)", "what the wheel presses on the pinion with, a vector; 0 on the wheel"),
     ("slip_mm_per_rad (mu=...)", "sliding of the pinion over the wheel, a vector; 0 on the wheel"),
     ("sticks (mu=...)", "1 where the flanks stick, 0 where they slide or do not touch"),
-)  # fmt: skip
+)
 DEFORMED = (
     ("displacement_mm", "of the nodes, a vector, at the first friction coefficient: Warp By Vector bends the teeth"),
     ("stress_MPa", "in the cells, at their centres: nine components, in space"),
@@ -174,7 +174,7 @@ SECTIONS = (
     ("`wear.json`", WearReport, ""),
     ("`wear.json`, `reports`, each entry", PairReport, ""),
     ("`wear.json`, `pinion` and `wheel` of a report", GearReport, ""),
-)  # fmt: skip
+)
 INTRODUCTION = f"""
 What a run leaves in its folder, `--out`. Units stand in the names: `_um` is µm, `_Nm` is N·m. Numbers in CSV files have
 nine digits, and `nan` where there is none. A text that a spreadsheet would compute, as it begins with =, +, - or @,

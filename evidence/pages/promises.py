@@ -39,7 +39,7 @@ OVER_PARAMETERS = (
 BAR, BALL, PRESSED, IMPACTS = (
     "Bar on a rigid wall", "Ball dropped on a block", "Pressed block under a varying force: order in time",
     "Bar between two walls: energy over a thousand impacts",
-)  # fmt: skip
+)
 OVER_TIME = (
     ("bar on a wall: time of contact", BAR, "time of contact 2L/c [µs]"),
     ("bar on a wall: impulse", BAR, "impulse 2mv [N·s/m]"),
@@ -52,7 +52,7 @@ OVER_TIME = (
      "growth of the energy over that at the start, 4 modes, 10 steps, conserving"),
     ("impacts by the default method: growth of the energy", IMPACTS,
      "growth of the energy over that of any flight before, no modes, 10 steps, ρ_∞ = 0.8"),
-)  # fmt: skip
+)
 """What transient contact must reach: a promise, the title of its problem, and what docs/verification.md calls it."""
 
 
@@ -111,7 +111,7 @@ def promises(docs: Path) -> list[Promise]:
     return [
         *_speed(tables), *_error_bars(tables), *_scenes(robustness), *_parameters(robustness),
         *_over_time(docs / "verification.md"),
-    ]  # fmt: skip
+    ]
 
 
 def _speed(tables: Path) -> Iterator[Promise]:
@@ -157,7 +157,7 @@ def _run(run: RunRow) -> Iterator[Promise]:
 
 def _error_bars(tables: Path) -> Iterator[Promise]:
     for name, what in (("bars", "true error inside the error bar"),
-                       ("spacing", "error of the spacing of positions inside its bar")):  # fmt: skip
+                       ("spacing", "error of the spacing of positions inside its bar")):
         rows = read_rows(tables / f"{name}.csv", BarRow)
         inside = sum(row.inside for row in rows)
         yield Promise(what, f"{100 * HELD:.0f} %", f"{inside} of {len(rows)}", inside >= HELD * len(rows))

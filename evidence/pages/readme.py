@@ -30,7 +30,7 @@ SHOWN = (
      "helical on deflected flanks, mean of the pitch"),
     ("spur pair: load share in double contact, rms off Pedrero's", "Contact ratio and load sharing of a spur pair",
      "share in double contact, rms off Pedrero's"),
-)  # fmt: skip
+)
 """What README.md calls a claim, the title of its problem, and what docs/verification.md calls it."""
 
 
@@ -43,7 +43,7 @@ SPEED = Table(
         Column("whole run", lambda row: f"{row.seconds:.0f} s"),
         Column("memory", lambda row: f"{row.memory_MB / 1000:.1f} GB"),
     ),
-)  # fmt: skip
+)
 
 
 def speed(docs: Path) -> str:

@@ -128,7 +128,7 @@ def malformed(_: Path) -> list[str]:
 PARTS: Mapping[str, Callable[[Path], list[str]]] = {
     "matrix": matrix, "scenes": scenes, "levels": levels, "wear": wear, "dynamics": dynamics,
     "independence": independence, "faults": faults, "malformed": malformed,
-}  # fmt: skip
+}
 TRIALS = {trial.command: trial for trial in (SCENES, LEVELS, WEAR, DRIVES)}
 
 

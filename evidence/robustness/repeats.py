@@ -43,7 +43,7 @@ CASES: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
 """Name -> command, scene of demos/, settings beside `SMALL`."""
 KEPT = Path("stress/repeats.csv")
 NO_FIGURES = ("seconds", "timings_s", "cost", "memory", "residual", "iterations", "balance_error", "momentum_error",
-              "reaction_error", "energy_error", "versions")  # fmt: skip
+              "reaction_error", "energy_error", "versions")
 """Parts of the names of what is no figure of a gear pair: the clock, and what rounding leaves over."""
 
 

@@ -77,7 +77,7 @@ TABLE = Table(
     Measured,
     (Column("figure", "what", words=True), Column("found", "found", ".4g"), Column("wanted", "wanted", words=True),
      Column("holds", "holds", words=True)),
-)  # fmt: skip
+)
 
 
 def yes(holds: bool) -> str:
@@ -111,7 +111,7 @@ def busy(out: Path, workers: int) -> Measured:
     share = sum(end - begin for begin, end in spans) / (workers * (max(ends) - min(begins)))
     wanted = "at least 0.9"
     return Measured(f"share of the time in which {workers} workers compute, {len(spans)} scenes", share, wanted,
-                    yes(share >= 0.9))  # fmt: skip
+                    yes(share >= 0.9))
 
 
 def killed(folder: Path) -> Iterator[Measured]:

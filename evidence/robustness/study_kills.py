@@ -137,13 +137,13 @@ def measured(outcome: Outcome) -> Iterator[Measured]:
     """Rows for the page."""
     count = ", ".join(f"{number} of {kind}" for kind, number in sorted(outcome.kills.items()))
     yield Measured(f"kills at random moments: {count}", float(outcome.kills.total()), "at least 30",
-                   yes(outcome.kills.total() >= 30))  # fmt: skip
+                   yes(outcome.kills.total() >= 30))
     yield Measured("studies among them that hang", float(outcome.hangs), "0", yes(outcome.hangs == 0))
     yield Measured(f"processes that outlive their study by more than {ORPHANS:g} s", float(outcome.orphans), "0",
-                   yes(outcome.orphans == 0))  # fmt: skip
+                   yes(outcome.orphans == 0))
     yield Measured("longest time that one does [s]", outcome.slowest, "at most 10", yes(not outcome.orphans))
     yield Measured(f"tables, of {outcome.ends} that were ended, that differ", float(outcome.differ), "0",
-                   yes(outcome.differ == 0))  # fmt: skip
+                   yes(outcome.differ == 0))
 
 
 def main() -> None:

@@ -59,7 +59,7 @@ def measured() -> list[Measured]:
         Measured("a position under 8 torques at 8 misalignments [s]", of_map, "", ""),
         Measured(f"the map over one sweep, {positions} positions, from {SOLVED} of them", ratio, "at most 3",
                  "yes" if ratio <= 3.0 else "no"),
-    ]  # fmt: skip
+    ]
 
 
 def _model(gears: LoadList, scene: Scene, mesh: Mesher) -> GearModel:

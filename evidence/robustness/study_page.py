@@ -12,7 +12,7 @@ from evolvent.scene.schema.section import SceneSection
 
 SECTIONS: tuple[tuple[str, type[SceneSection]], ...] = (
     ("", StudyFile), ("latin_hypercube.", LatinHypercubeSection), ("figure.", FigureSection),
-)  # fmt: skip
+)
 
 
 def keys() -> str:

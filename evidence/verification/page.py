@@ -118,7 +118,7 @@ def _section(problem: Verification) -> str:
         CLAIMS.markdown(problem.claims),
         *_filled(f"Missed: {reason}" for reason in reasons),
         f"![{problem.title}]({PICTURES}/{problem.name}.png)",
-    ))  # fmt: skip
+    ))
 
 
 def _filled(paragraphs: Iterable[str]) -> list[str]:

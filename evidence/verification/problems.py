@@ -27,5 +27,5 @@ PROBLEMS: Mapping[str, Callable[[], Verification]] = {
         partial_slip, mindlin, rolling, sliding, sliding_ball, ironing, torque, sharing,
         bar_on_wall, dropped_ball, pressed_block, thousand_impacts,
     )
-}  # fmt: skip
+}
 """Name -> what solves it."""

@@ -19,7 +19,7 @@ PART = ".evolvent-part"
 
 SPECIAL_FILES = {
     stat.S_IFIFO: "a named pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket",
-}  # fmt: skip
+}
 
 
 class WriteError(EvolventError, OSError):

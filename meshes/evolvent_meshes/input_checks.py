@@ -72,7 +72,7 @@ def is_index(value: object) -> bool:
 def number(
     what: str, value: Any, wanted: str = "a finite number", remedy: str = "give a number",
     allowed: Callable[[float], bool] = lambda x: True,
-) -> float:  # fmt: skip
+) -> float:
     """The value as a finite number for which `allowed` holds. Raises InputError."""
     if not (is_number(value) and allowed(float(value))):
         refuse(what, wanted, value, remedy)

@@ -34,7 +34,7 @@ from evolvent.failures import (
     reported,
     silent_except_on_first,
     tolerate_terminal_encoding,
-)  # fmt: skip
+)
 from evolvent.fem.backend.cache_folder import keep_fonts
 from evolvent.fem.parallel.mpi_start import is_first
 from evolvent.options import (
@@ -48,7 +48,7 @@ from evolvent.options import (
     given_number,
     given_path,
     usage_message,
-)  # fmt: skip
+)
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene_argument import loaded_scene, require, require_room
 from evolvent.strength_commands import FATIGUE_EPILOG, STRENGTH_EPILOG, fatigue, strength
@@ -196,7 +196,7 @@ def wear_coefficient(
     run_in: Annotated[
         float, typer.Option("--run-in-m", help="Sliding distance that is left out.", parser=given_number)
     ] = 0.0,
-) -> None:  # fmt: skip
+) -> None:
     """Archard's K/H from pin-on-disc records, with its spread."""
     with reported():
         from evolvent.wear.pin_on_disc import PinOnDisc, Record, coefficient

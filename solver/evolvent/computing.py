@@ -25,7 +25,7 @@ from evolvent.options import (
     TablesFolder,
     given_path,
     given_percents,
-)  # fmt: skip
+)
 from evolvent.scene.scene import Scene
 from evolvent.scene_argument import loaded_scene, require, require_room, unworn
 
@@ -228,7 +228,7 @@ def transient(
             for line in summary_lines(out):
                 typer.echo(line)
             done(out, "transient.toml", "transient.csv", "transient_teeth.csv", "transient.json",
-                 "pictures/transient.png", "pictures/field_of_action.gif")  # fmt: skip
+                 "pictures/transient.png", "pictures/field_of_action.gif")
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:

@@ -84,4 +84,4 @@ def fatigue(
             for line in fatigue_lines(out):
                 typer.echo(line)
             done(out, "fatigue.toml", "fatigue.csv", "fatigue_life.csv", "fatigue_map.csv", "fatigue_depth.csv",
-                  "fatigue.json", "pictures/fatigue.png")  # fmt: skip
+                  "fatigue.json", "pictures/fatigue.png")

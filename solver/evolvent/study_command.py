@@ -52,7 +52,7 @@ def study(
         bool, typer.Option("--overwrite", help="Replace the table of another study in DIR; its scenes stay.")
     ] = False,
     quiet: Quiet = False,
-) -> None:  # fmt: skip
+) -> None:
     """Compute many scenes.
 
     Parameters vary as a grid, side by side, or as a Latin hypercube; one table and pictures gather the figures. Scenes

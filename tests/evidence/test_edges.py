@@ -20,7 +20,7 @@ def test_named_tests_exist() -> None:
         module: {node.name for node in ast.parse((ROOT / f"tests/{module}.py").read_bytes()).body
                  if isinstance(node, ast.FunctionDef)}
         for module, _ in NAMED
-    }  # fmt: skip
+    }
     assert [f"{module}::{name}" for module, name in NAMED if name not in functions[module]] == []
 
 

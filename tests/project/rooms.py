@@ -180,5 +180,5 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.mesh", "fem.backend", "fem.parallel", "gears.meshing", "scene.*", "results.tables",
         "results.drawing", "wear", "run.*",
     ),
-}  # fmt: skip
+}
 """Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""

@@ -20,7 +20,7 @@ SHOWN = (
     evolvent.Body, evolvent.Material, evolvent.MeshData, evolvent.Problem, evolvent.Contact, evolvent.Step,
     evolvent.read_msh, evolvent.solve, evolvent.sweep, evolvent.gears.GearParameters.from_rack, evolvent.gears.GearPair,
     evolvent.gears.GearProblem, evolvent.gears.condense, evolvent.wear.Archard, evolvent.wear.BlockSettings,
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: ".".join(path.with_suffix("").parts))

@@ -35,7 +35,7 @@ def quoted(text: str) -> set[str]:
 def test_every_function_is_named(module: ModuleType) -> None:
     """All public functions of the modules stand on the page."""
     public = {name for name, f in inspect.getmembers(module, inspect.isfunction)
-              if f.__module__ == module.__name__ and not name.startswith("_")}  # fmt: skip
+              if f.__module__ == module.__name__ and not name.startswith("_")}
     assert public
     assert public - quoted(PAGE) == set()
 
@@ -47,7 +47,7 @@ def test_groups_and_parameters(name: str) -> None:
     _, _, groups, parameters = ROWS[name]
     assert quoted(groups) - {"contact"} == set(MESHES[name].facets)
     (function,) = (getattr(module, name) for module in (blocks, rings, ellipse) if hasattr(module, name)
-                   and getattr(module, name).__module__ == module.__name__)  # fmt: skip
+                   and getattr(module, name).__module__ == module.__name__)
     named = quoted(parameters)
     for other in named & set(MESHES):
         named |= quoted(ROWS[other][3])

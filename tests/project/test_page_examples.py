@@ -61,7 +61,7 @@ def environment(checkout: Path) -> dict[str, str]:
         "PATH": os.pathsep.join([str(checkout / ".venv/bin"), "/usr/local/bin", "/usr/bin", "/bin"]),
         "HOME": str(checkout), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache")),
         "PYTHONPATH": PYTHONPATH, "CHECKOUT": str(ROOT), "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg",
-    }  # fmt: skip
+    }
 
 
 @pytest.mark.mpi
@@ -74,7 +74,7 @@ def test_shell_lines_run(page: Path, checkout: Path) -> None:
         done = subprocess.run(
             ["sh", "-c", script], cwd=checkout, env=environment(checkout), capture_output=True, text=True,
             timeout=600, check=False,
-        )  # fmt: skip
+        )
     assert done.returncode == 0, f"{page.name}: {done.stdout[-2000:]}{done.stderr[-2000:]}"
 
 
@@ -85,7 +85,7 @@ def test_python_blocks_run(page: Path, checkout: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=checkout, env=environment(checkout), capture_output=True, text=True,
         timeout=600, check=False,
-    )  # fmt: skip
+    )
     assert done.returncode == 0, f"{page.name}: {done.stderr[-2000:]}"
 
 

@@ -31,7 +31,7 @@ def modules(trees: tuple[str, ...] = PACKAGES) -> dict[str, Path]:
     return {
         ".".join(path.relative_to(root).with_suffix("").parts): path
         for root, paths in zip(roots, files) for path in paths
-    }  # fmt: skip
+    }
 
 
 def imports(trees: tuple[str, ...] = PACKAGES) -> dict[str, set[str]]:
@@ -71,7 +71,7 @@ def refused(found: Imports) -> list[str]:
         f"{module} imports {target}"
         for module, targets in found.items() for target in targets
         if room(target) != room(module) and not any(allows(entry, room(target)) for entry in ROOMS[room(module)])
-    )  # fmt: skip
+    )
 
 
 def test_a_room_imports_from_rooms_above_it() -> None:
@@ -99,7 +99,7 @@ def test_the_list_of_rooms_has_no_arrow_up() -> None:
     """A room may import only what stands before it in the list."""
     names = list(ROOMS)
     backwards = [(name, target) for at, name in enumerate(names) for entry in ROOMS[name]
-                 for target in names[at:] if allows(entry, target)]  # fmt: skip
+                 for target in names[at:] if allows(entry, target)]
     assert backwards == []
 
 
@@ -107,7 +107,7 @@ def test_the_list_of_rooms_allows_no_more_than_is_used() -> None:
     """Every entry of the list stands for an import that there is."""
     used = {(room(module), room(target)) for module, targets in imports().items() for target in targets}
     spare = [(name, entry) for name, entries in ROOMS.items() for entry in entries
-             if not any(one == name and allows(entry, other) for one, other in used)]  # fmt: skip
+             if not any(one == name and allows(entry, other) for one, other in used)]
     assert spare == []
 
 
@@ -157,7 +157,7 @@ def test_packages_import_nothing_that_stands_on_them() -> None:
     """Neither evidence nor demos nor tests."""
     above = imports((*PACKAGES, "evidence", "demos", "tests"))
     outside = [f"{module} imports {target}" for module in modules() for target in above[module]
-               if target.split(".")[0] in ("evidence", "demos", "tests")]  # fmt: skip
+               if target.split(".")[0] in ("evidence", "demos", "tests")]
     assert outside == []
 
 
@@ -189,7 +189,7 @@ def test_what_is_too_large_is_found(tmp_path: Path) -> None:
         (tmp_path / f"room_{number}" / "file.py").touch()
     assert sizes(tmp_path) == [
         f"{tmp_path}: {FILES + 1} files", f"{tmp_path}: {BELOW + 1} rooms", f"{tmp_path / 'file_0.py'}: 301 lines",
-    ]  # fmt: skip
+    ]
 
 
 def test_the_design_page_has_every_room() -> None:
@@ -201,5 +201,5 @@ def test_the_design_page_has_every_room() -> None:
     assert sorted(rooms) == sorted(ROOMS)
     order = {name: at for at, name in enumerate(rooms)}
     below = [(name, target) for name, entries in ROOMS.items() for entry in entries for target in ROOMS
-             if allows(entry, target) and order[target] > order[name]]  # fmt: skip
+             if allows(entry, target) and order[target] > order[name]]
     assert below == []

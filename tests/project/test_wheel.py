@@ -19,7 +19,7 @@ SOURCES = ("pyproject.toml", "README.md", "LICENSE", "solver", "meshes")
 TINY = (
     "--level", "quick", "--quiet", "--set", "sweep.positions=4", "--set", "output.pictures=false",
     "--set", "output.animation=false", "--set", "output.fields=false", "--set", "output.error_bars=false",
-)  # fmt: skip
+)
 HEAVY = {"numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "matplotlib", "pyvista", "gmsh", "pydantic"}
 
 
@@ -30,7 +30,7 @@ def called(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
     done = subprocess.run(
         words, cwd=cwd, env={**inherited, "OMP_NUM_THREADS": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"},
         capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
+    )
     assert done.returncode == 0, f"{words}: {done.stdout}{done.stderr}"
     return done
 

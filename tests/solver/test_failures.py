@@ -27,7 +27,7 @@ NOT_REPORTED = {"evolvent.stopping.Stopped", "evolvent_meshes.files.NoFile"}
 STATUSES = {
     NotConverged: 3, SearchError: 3, BalanceError: 3, PitchImbalance: 3, MeshError: 2, NotPositiveDefinite: 2,
     OutOfMemory: 1, CompileError: 1,
-}  # fmt: skip
+}
 
 
 def exceptions() -> Iterator[type[BaseException]]:

@@ -22,7 +22,7 @@ from tests.support.running.processes import one_at_a_time
 from tests.support.synthetic_run import synthetic_run
 
 COMMANDS = {str(each.name or each.callback.__name__): str(each.epilog) for each in app.registered_commands
-            if each.callback is not None}  # fmt: skip
+            if each.callback is not None}
 """Name -> the end of its help, with examples."""
 PROCESSES = {"study": 3}
 """Command -> how many processes start MPI, where it is not one: watched until all have."""
@@ -107,7 +107,7 @@ def test_mpirun_in_a_network_of_its_own(tmp_path: Path) -> None:
         done = subprocess.run(
             ["sh", "-c", f"{' '.join(command.split())} {sys.executable} {tmp_path}/probe.py'"], capture_output=True,
             env={**os.environ, **variables(**MPI_AS_ROOT)}, text=True, timeout=120, check=False,
-        )  # fmt: skip
+        )
     assert done.stdout == f"[{(os.getuid(), 1)}, {(os.getuid(), 1)}]", done.stderr
 
 

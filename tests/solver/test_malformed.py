@@ -170,7 +170,7 @@ def test_named_pipe_as_mesh_is_refused(tmp_path: Path, in_time: None) -> None:
 ])
 def test_named_pipes_in_a_run_folder_are_refused(
     name: str, words: str, folder: Path, capfd: pytest.CaptureFixture[str], in_time: None
-) -> None:  # fmt: skip
+) -> None:
     """Named pipes in place of a run's own files, from which it goes on: refused by `run --resume`, never read."""
     RunFolder(folder / "out").write(name, b"").unlink()
     pipe_without_writer(folder / "out", name)
@@ -224,7 +224,7 @@ def test_chart_paths_of_scene_and_overrides(folder: Path) -> None:
 EXTREMES = (
     "5e-324", "1e-300", "1e-160", "1e-30", "1e-9", "1e-3", "0.5", "1", "2", "5", "45", "1000", "1e6", "1e9", "1e160",
     "1.7e308", "1000000000000", "0", "-0.0", "-1", "-1e300", "1" + "0" * 400,
-)  # fmt: skip
+)
 NUMBERS = [key for key, field in keys_of(Scene).items() if re.search(r"float|int|Literal\[1", str(field.annotation))]
 LONG_WAY = 'skip.off=["plane", "one-pitch", "far-teeth", "one-sector", "coarse-body", "window"]'
 

@@ -18,7 +18,7 @@ SOURCES = ROOT / "solver"
 PACKAGES = sorted(
     ".".join(path.relative_to(SOURCES).parent.parts)
     for path in SOURCES.rglob("__init__.py") if "lazy_names(" in path.read_text(encoding="utf-8")
-)  # fmt: skip
+)
 """Those with public names of their own."""
 
 

@@ -111,7 +111,7 @@ def test_a_scheduler_with_certificates(tmp_path: Path, monkeypatch: pytest.Monke
     subprocess.run(
         ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=study", "-days", "2",
          "-out", str(certificate), "-keyout", str(key)], check=True, capture_output=True,
-    )  # fmt: skip
+    )
     out, arguments = tmp_path / "out", ["study", str(study), "--quiet", "--out", str(tmp_path / "out"), "--scheduler"]
     with monkeypatch.context() as configured:
         configured.setenv("DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION", "True")
@@ -141,13 +141,13 @@ def test_commands_of_the_page(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
     small = {"10.0.0.1": "127.0.0.1", "8786": str(port), "demos/studies/zhang2023_torque.toml":
-             str(written(tmp_path, TORQUES)), "out/torque": str(tmp_path / "out")}  # fmt: skip
+             str(written(tmp_path, TORQUES)), "out/torque": str(tmp_path / "out")}
     for old, new in small.items():
         assert old in text
         text = text.replace(old, new)
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     scheduling, working, studying = (["env", f"PATH={path}", "bash", "-c", f"exec env {line}"]
-                                     for line in text.splitlines())  # fmt: skip
+                                     for line in text.splitlines())
 
     def answers() -> bool:
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port)):

@@ -67,7 +67,7 @@ def rubber(
 def quarter_ring(inner: float, outer: float, around: int, across: int, order: int = 2) -> MeshData:
     """Facet groups inner, outer, and in the planes of symmetry at_x (y = 0), at_y (x = 0) [mm]."""
     r, angle = (subdivided(np.linspace(a, b, n + 1), order) for a, b, n in
-                ((inner, outer, across), (0.0, np.pi / 2.0, around)))  # fmt: skip
+                ((inner, outer, across), (0.0, np.pi / 2.0, around)))
     R, θ = np.meshgrid(r, angle, indexing="ij")
     points = np.stack([R * np.cos(θ), R * np.sin(θ), 0.0 * R], axis=-1).reshape(-1, 3)
     cells = lattice_cells((across, around), order)

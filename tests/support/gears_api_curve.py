@@ -20,7 +20,7 @@ def he_problem() -> GearProblem:
     """The pair of demos/he2022.toml at level quick, under 170 N·m."""
     gear = GearParameters.from_rack(
         z=50, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0, bore_diameter=70.0,
-    )  # fmt: skip
+    )
     return GearProblem(GearPair(gear, gear, 150.0), torque=170e3, mesh=MeshSettings("quick"))
 
 

@@ -51,7 +51,7 @@ def random_correction(random: np.random.Generator, rows: int, layers: int) -> Ra
 def _strip(
     random: np.random.Generator, sources: tuple[int, int], moved: tuple[int, int], source: tuple[int, int],
     start: tuple[int, int], layers: int,
-) -> Strip:  # fmt: skip
+) -> Strip:
     change = random.integers(-99, 99, size=(3 * sources[0] * sources[1], 3 * moved[0] * moved[1])).astype(float)
     return Strip(change, sources, moved, source, start, layers)
 

@@ -21,7 +21,7 @@ GOOD = MeshFacts(0.3, 3.1, 2.0)
 FACTS = RunFacts(
     {"numpy": np.__version__}, 2, 123, 0, 45, MeshFacts(0.31, 2.1, 1.4),
     (Skipped("one-pitch", "One pitch is solved."),), Timings(1.0, 2.0), 99.5,
-)  # fmt: skip
+)
 
 
 def store(run: RunData, folder: Path) -> None:
@@ -40,4 +40,4 @@ def hashes(folder: Path) -> dict[str, str]:
     return {
         path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(folder.rglob("*")) if path.is_file() and path != folder / MANIFEST
-    }  # fmt: skip
+    }

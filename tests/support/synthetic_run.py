@@ -133,7 +133,7 @@ def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: flo
         stand, friction, (torque, pair.ratio * (torque - loss)), points, tooth, node, flank.weights()[node], traction,
         5, 1e-9, STIFFNESS / (1.0 if d == 3 else pair.face_width),
         no_rows, no_rows, no_forces, no_forces, 0.1,
-    )  # fmt: skip
+    )
 
 
 @dataclass(frozen=True)

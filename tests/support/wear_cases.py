@@ -30,7 +30,7 @@ def cylinder(cells: float = 8.0, order: int = 2, friction: float = 0.0, material
     pin = Body(
         cylinder_2d(RADIUS, size, fine, order, contact=fine),
         material, rigid=Rigid("top", (Freedom("y", load=-LINE_LOAD),)), name="cylinder",
-    )  # fmt: skip
+    )
     slab = graded_rectangle(4.0, 2.0, size / 1.25, 1.5 * fine, order)
     return Problem(
         (pin, Body(with_part(slab, "top", "near", 1.5 * fine), material, (Fixed("bottom"),), name="slab")),

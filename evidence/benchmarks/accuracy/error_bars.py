@@ -136,7 +136,7 @@ def hit_rate(rows: Sequence[BarRow]) -> float:
 def _rows(
     case: str, frictions: Sequence[float], values: Sequence[Sequence[float]], bars: Sequence[Sequence[float]],
     exact: Sequence[Sequence[float]], nearly: Sequence[Sequence[float]],
-) -> list[BarRow]:  # fmt: skip
+) -> list[BarRow]:
     """All figures of a case; the tables are (friction coefficients, figures)."""
     return [
         BarRow(case, figure, friction, value, bar, abs(value - best), abs(best - second))

@@ -97,7 +97,7 @@ class Errors:
 def _rows(
     pair: str, mesh: str, percent: float, tried: Mapping[str, PitchCurve], exact: Mapping[str, PitchCurve],
     nearly: Mapping[str, PitchCurve],
-) -> Iterator[ExcitationRow]:  # fmt: skip
+) -> Iterator[ExcitationRow]:
     """All kinds of figures of all quantities under one torque."""
     for quantity, curve in tried.items():
         best, second = exact[quantity], nearly[quantity]

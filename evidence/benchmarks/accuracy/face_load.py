@@ -71,7 +71,7 @@ TABLE = Table(
     Way,
     (Column("way", "name", words=True), Column("stiffness against tilting [N/(mm µm)]", "stiffness", ".1f"),
      Column("K_Hβ", "factor", ".2f")),
-)  # fmt: skip
+)
 
 
 def method_c(misalignment: float, stiffness: float, line_load: float) -> float:
@@ -89,7 +89,7 @@ def ways() -> Iterator[Way]:
     pair, torque = aligned.pair, 1e3 * aligned.scene.load.torque_Nm
     at_reference, at_base = (2.0 * torque / d / pair.face_width for d in (
         pair.pinion.reference_diameter, pair.pinion.base_diameter,
-    ))  # fmt: skip
+    ))
     standard = TILTING * mesh_stiffness(single_stiffness(pair, at_reference), pair.transverse_contact_ratio)
     yield Way("ISO 6336-1, Method C", standard, method_c(MISALIGNMENT, standard, at_reference))
     uniform = friction_rows(aligned)[0].mesh_stiffness_N_per_mm_um

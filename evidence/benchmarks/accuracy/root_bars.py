@@ -122,7 +122,7 @@ def measure_bars(problem: RootProblem) -> Iterator[RootBarRow]:
 def _row(
     head: tuple[str, str, int, float, str, str], order: int, own: GearRoots, coarse: GearRoots, best: GearRoots,
     second: GearRoots,
-) -> RootBarRow:  # fmt: skip
+) -> RootBarRow:
     curve = CURVES[head[-1]]
     bars = curve_errors(curve, own, coarse, order)
     tried, exact, nearly = curve(own), curve(best), curve(second)

@@ -45,7 +45,7 @@ CASES = (
         "mesh.level=quick", "sweep.positions=20", "transient.speeds_rpm=[1500]", "contact.friction=[0.1]",
         "pinion.face_width_mm=6", "wheel.face_width_mm=6",
     )),
-)  # fmt: skip
+)
 """One in plane strain, one in space with friction."""
 
 

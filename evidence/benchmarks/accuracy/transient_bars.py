@@ -34,7 +34,7 @@ RESONANCE = 4200
 TRIED = "mesh.level=quick", "sweep.positions=20"
 REFERENCE = (
     "mesh.level=standard", "sweep.positions=160", "transient.modes_per_harmonic=4", "output.error_bars=false",
-)  # fmt: skip
+)
 VARIANTS = {
     "dynamics.damping_ratio=0.03": (1200, 1600, 2000, 3300, RESONANCE),
     "dynamics.damping_ratio=0.015": (RESONANCE,),
@@ -89,7 +89,7 @@ class Bars:
         return HitRow(
             variant, fact["speed_rpm"], fact["separated"], figure, int(np.sum(true <= bar)), int(known.sum()),
             float(np.median(bar)) / size, float(np.median(true)) / size,
-        )  # fmt: skip
+        )
 
 
 def computed(settings: Sequence[str], variant: str, folder: Path, speeds: Sequence[float]) -> Path:
@@ -135,7 +135,7 @@ def table(rows: Iterable[HitRow]) -> str:
         (row.variant, f"{row.speed:g}", f"{100 * row.separated:.0f}", row.figure, f"{row.inside} of {row.count}",
          f"{100 * row.median_bar:.1f}", f"{100 * row.median_error:.1f}")
         for row in rows
-    ])  # fmt: skip
+    ])
 
 
 def inside(rows: Iterable[HitRow]) -> str:

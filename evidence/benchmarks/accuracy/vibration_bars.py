@@ -100,7 +100,7 @@ def table(rows: Iterable[HitRow]) -> str:
         (row.variant, str(row.positions), row.figure, row.away, row.beside, f"{100 * row.median_bar:.2f}",
          f"{100 * row.median_error:.2f}")
         for row in rows
-    ])  # fmt: skip
+    ])
 
 
 if __name__ == "__main__":

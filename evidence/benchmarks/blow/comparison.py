@@ -48,7 +48,7 @@ class Case:
         return BlowRow(
             *named, 1e6 * begin, 1e6 * end, 1e6 * course.impulse, float(course.mean.max()),
             course.difference(self.reference), course.energy, "",
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ class Solved:
 def solve(
     program: Program, task: Path, folder: Path, time_limit: float = TIME_LIMIT,
     variables: Mapping[str, str] = MappingProxyType({}),
-) -> Solved:  # fmt: skip
+) -> Solved:
     """Runs a program on a task's file, with further environment variables. Raises RunFailed."""
     answer = folder / f"answer-{program.name.replace(' ', '-')}.npz"
     interpreter, flag, module, *rest = program.words

@@ -76,7 +76,7 @@ class Task:
             "shape": self.bodies[0].shape, "order": self.bodies[0].order, "materials": self.materials,
             "driven": self.driven, "drive": asdict(self.drive), "held": self.held, "contact": self.contact,
             "friction": self.friction,
-        }  # fmt: skip
+        }
         np.savez(path, statement=json.dumps(rest), **arrays)  # type: ignore[arg-type]  # numpy's hints of **kwargs
 
     @staticmethod

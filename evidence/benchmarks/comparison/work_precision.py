@@ -168,7 +168,7 @@ def rows(
             yield Row(
                 *head, cost.wall, cost.cpu, first, ratio, cost.memory_MB, answer.iterations,
                 pressure.force / known.force - 1.0, pressure.peak(a) / known.peak - 1.0, pressure.error(reference),
-            )  # fmt: skip
+            )
 
 
 def _side_by_side(

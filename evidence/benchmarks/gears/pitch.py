@@ -90,7 +90,7 @@ class PitchFacts:
 def pitch_cost(
     folder: Path, elements: float, positions: int, *settings: str, level: str = "quick",
     frictions: str = str(FRICTION), ranks: int = 1, variables: Mapping[str, str] = MappingProxyType({}),
-) -> tuple[Cost, PitchFacts]:  # fmt: skip
+) -> tuple[Cost, PitchFacts]:
     """A pitch in a process of its own, and what it took. Raises RunFailed."""
     out = folder / "pitch.json"
     words = module_run("evidence.benchmarks.gears.pitch", out, elements, level, positions, frictions, *settings)

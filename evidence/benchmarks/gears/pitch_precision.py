@@ -78,7 +78,7 @@ def rows(sizes: PitchSizes, folder: Path) -> Iterator[PitchRow]:
 
 def _row(
     folder: Path, sizes: PitchSizes, kind: Kind, known: tuple[float, float], cold: bool = False
-) -> PitchRow:  # fmt: skip
+) -> PitchRow:
     """known: the overkill pitch's mean transmission error and its own error."""
     shape, order, ranks, flanks, elements = kind
     settings = [f'mesh.shape="{shape}"', f"mesh.order={order}", *([LEVELS] if flanks == IN_LEVELS else [])]
@@ -92,4 +92,4 @@ def _row(
     return PitchRow(
         *kind, facts.dofs, facts.counted, facts.one_position, facts.without_meshing, first, cost.memory_MB,
         facts.mean_error / known[0] - 1.0, known[1],
-    )  # fmt: skip
+    )

@@ -76,7 +76,7 @@ def rows(peers: Sequence[Program], sizes: GearSizes, folder: Path) -> Iterator[G
         yield GearRow(
             EVOLVENT.name, "whole gears", 2, elements, facts.dofs, facts.counted, fast, 1.0, cost.memory_MB,
             float(np.mean(facts.iterations)), 1e-3 * force / error, fine / error - 1.0, abs(fine / coarse - 1.0),
-        )  # fmt: skip
+        )
     coarse, fine = (_solved(EVOLVENT, folder, n, order=2)[1].answer.torque for n in sizes.overkill_teeth)
     for elements in sizes.teeth:
         for program in (EVOLVENT, *peers):
@@ -108,4 +108,4 @@ def _teeth_row(
         *head, dofs, len(solutions), seconds, seconds / fast, max(s.cost.memory_MB for s in solutions),
         float(np.mean([s.answer.iterations for s in solutions])), 1e-6 * torque / ROTATION, torque / exact - 1.0,
         exact_error,
-    )  # fmt: skip
+    )

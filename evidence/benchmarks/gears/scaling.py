@@ -99,7 +99,7 @@ def _size_rows(sizes: tuple[float, ...], folder: Path, *settings: str) -> Iterat
         yield SizeRow(
             elements, facts.dofs, facts.assemble, facts.condense, facts.positions[last], facts.iterations[last],
             facts.memory_MB,
-        )  # fmt: skip
+        )
 
 
 def exponent(dofs: Floats, values: Floats) -> float:
@@ -115,7 +115,7 @@ def ratio_rows(sizes: ScalingSizes, folder: Path) -> Iterator[RatioRow]:
     _, levels = pitch_cost(folder, sizes.ratio, sizes.positions, LEVELS)
     pitch = f"a pitch of {sizes.positions} positions"
     for what, above in ((pitch, _seconds(whole)), (f"{sizes.positions} positions alone", sum(whole.positions)),
-                        (f"{pitch}, flanks in levels,", _seconds(levels))):  # fmt: skip
+                        (f"{pitch}, flanks in levels,", _seconds(levels))):
         yield _ratio(f"{what} {over}", whole.dofs, above, once.factoring, 3.0, 1.5)
     _, seven = pitch_cost(folder, sizes.ratio, sizes.positions, frictions=SEVEN)
     _, strong = pitch_cost(folder, sizes.ratio, sizes.positions, frictions=STRONGEST)  # where more is solved again
@@ -125,7 +125,7 @@ def ratio_rows(sizes: ScalingSizes, folder: Path) -> Iterator[RatioRow]:
         pitch_cost(folder, sizes.ranks_elements, sizes.positions // 2, level=sizes.ranks_level, frictions=SEVEN,
                    ranks=ranks)
         for ranks in (1, 2)
-    )  # fmt: skip
+    )
     yield _ratio(f"one rank over two, {sizes.ranks_level}, {several}", facts.dofs, alone.wall, two.wall, 1.5, 1.8)
 
 

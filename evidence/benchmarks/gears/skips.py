@@ -95,7 +95,7 @@ def rows(cases: Sequence[Case] = CASES) -> Iterator[SkipRow]:
             case.skip, case.scene, " ".join(case.settings), short["timings_s"]["total"], long["timings_s"]["total"],
             short["peak_memory_MB"], long["peak_memory_MB"], differences(short, long).largest,
             skip_named(case.skip).tolerance,
-        )  # fmt: skip
+        )
 
 
 def summary_of(case: Case, *options: str) -> Summary:

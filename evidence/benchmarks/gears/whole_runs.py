@@ -25,7 +25,7 @@ SLENDER = (
     'title="23/81"', "pair.normal_module_mm=2", "pair.helix_angle_deg=20", "pinion.teeth=23", "wheel.teeth=81",
     *(f"{gear}.{key}" for gear in ("pinion", "wheel") for key in ("face_width_mm=20", "tip_relief_um=0")),
     "pinion.bore_diameter_mm=25", "wheel.bore_diameter_mm=60",
-)  # fmt: skip
+)
 """An ordinary pair that changes demos/first_pair.toml: 23 and 81 teeth, m_n = 2 mm, β = 20°, b = 20 mm."""
 
 
@@ -139,7 +139,7 @@ def row_of(case: RunCase, summary: dict[str, Any], memory_MB: float) -> RunRow:
         spent["total"] - sum(later), *later, spent["total"], case.seconds_bar, memory_MB,
         case.memory_bar_MB, sum(position["newton_iterations"] for position in positions) / len(positions),
         case.iterations_bar,
-    )  # fmt: skip
+    )
 
 
 def failed(case: RunCase, reason: str) -> RunRow:
@@ -147,4 +147,4 @@ def failed(case: RunCase, reason: str) -> RunRow:
     return RunRow(
         case.name, case.level, 0, 0, 0, nan, nan, nan, nan, nan, case.seconds_bar, nan, case.memory_bar_MB, nan,
         case.iterations_bar, reason,
-    )  # fmt: skip
+    )

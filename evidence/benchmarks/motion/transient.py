@@ -67,7 +67,7 @@ def rows(sizes: TransientSizes) -> Iterator[MotionRow]:
     dolfinx_compat.silence_logs()
     spur = cost(_scene("he2022.toml", sizes.positions, sizes.speed, 0.0))
     yield MotionRow(f"He's pair, {sizes.positions} positions: a time step over a position", spur.step, spur.position,
-                    STEP_BAR)  # fmt: skip
+                    STEP_BAR)
     helical = cost(_scene(sizes.helical_scene, sizes.helical_positions, sizes.speed, 0.1))
     name = f"helical pair, {sizes.helical_positions} positions, friction"
     yield MotionRow(f"{name}: a time step over a position", helical.step, helical.position, STEP_BAR)
@@ -117,4 +117,4 @@ def _scene(name: str, positions: int, speed: float, friction: float) -> Scene:
     return load_scene(DEMOS / name, [
         "mesh.level=quick", f"sweep.positions={positions}", f"contact.friction=[{friction}]",
         f"transient.speeds_rpm=[{speed}]",
-    ])  # fmt: skip
+    ])

@@ -70,14 +70,14 @@ def rows(sizes: DynamicsSizes) -> Iterator[MotionRow]:
     plane = _scene(DEMOS / "he2022.toml", sizes.level, sizes.positions)
     _, seconds = _excitation(plane, sizes.percents)
     yield MotionRow(f"excitation of He's pair, {sizes.positions} positions, {count} torques", seconds, nan,
-                      EXCITATION_BAR)  # fmt: skip
+                      EXCITATION_BAR)
     yield _speeds(sizes)
     helical = _scene(SCENES / "narrow_helical.toml", "quick", sizes.helical_positions)
     whole, one = (_excitation(helical, percents)[1] for percents in (sizes.percents, (100.0,)))
     yield MotionRow(
         f"excitation of a helical pair, {sizes.helical_positions} positions, {count} torques over one", whole, one,
         TORQUES_BAR,
-    )  # fmt: skip
+    )
     loop = [[_blocks(sizes, vibrates) for vibrates in (True, False)] for _ in range(TURNS)]
     whole, one = (min(each) for each in zip(*loop))
     yield MotionRow(f"{sizes.blocks} blocks of wear with vibration over as many without", whole, one, LOOP_BAR)

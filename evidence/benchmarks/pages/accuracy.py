@@ -33,7 +33,7 @@ HITS = Table(
         Column("inside, decided", lambda rows: sum(row.inside for row in rows if row.decided)),
         Column("decided", lambda rows: sum(row.decided for row in rows)),
     ),
-)  # fmt: skip
+)
 """A line a figure, of all its rows."""
 
 
@@ -46,7 +46,7 @@ EXCITATION_HITS = Table(
         Column("decided", lambda group: _sum(group[1], "decided")),
         Column("inside, decided", lambda group: _sum(group[1], "decided_inside")),
     ),
-)  # fmt: skip
+)
 """A line a group of rows, with its name."""
 
 
@@ -57,7 +57,7 @@ LEVELS = Table(
         Column("%", "figure", ".2%"), Column("bar, %", "bar", ".1%"),
         Column("", lambda row: "" if isnan(row.bar) else verdict(row.met), words=True),
     ),
-)  # fmt: skip
+)
 """A line a figure."""
 
 
@@ -107,7 +107,7 @@ def _excitation_hits(rows: Sequence[ExcitationRow]) -> list[str]:
         "The median error of a position in per cent of the mean, by mesh (order, shape, elements across the contact "
         "width) and torque; behind it what the reference itself may be off by:",
         _convergence(by_mesh),
-    ]  # fmt: skip
+    ]
 
 
 def _words(column: str) -> str:

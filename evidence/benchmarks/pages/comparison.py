@@ -30,7 +30,7 @@ HERTZ = Table(
         Column("Newton", "iterations"), Column("force %", "force_error", "+.2%"),
         Column("p0 %", "peak_error", "+.2%"), Column("L2 %", "profile_error", ".2%"),
     ),
-)  # fmt: skip
+)
 GEARS = Table(
     GearRow,
     (
@@ -40,7 +40,7 @@ GEARS = Table(
         Column("N·m/mrad", "stiffness", ".2f"), Column("error %", "error", "+.2%"),
         Column("reference's own %", "reference_error", ".2%"),
     ),
-)  # fmt: skip
+)
 
 
 def advantage(rows: Sequence[Row], least_dofs: int) -> list[tuple[Row, Row, float]]:
@@ -133,4 +133,4 @@ SECTIONS: tuple[PageSection[Any], ...] = (
         for name, title in TITLES.items()
     ),
     PageSection("Gear pair", "gears", GEARS, figure=figures.gears, caption="Seconds a position", words=_gears_said),
-)  # fmt: skip
+)

@@ -22,15 +22,15 @@ from evolvent_meshes.arrays import Floats
 COLOURS = {
     EVOLVENT.name: "#c0392b", "GetFEM": "#1f5fa8", "CalculiX": "#3b7a57", "CalculiX mortar": "#c98a1b",
     "Kratos": "#8a5a9e",
-}  # fmt: skip
+}
 BLOCK_COLOURS = {"implicit": "#c0392b", "explicit": "#1f5fa8"}
 PLURAL = {"quadrilateral": "quadrilaterals", "triangle": "triangles", "hexahedron": "hexahedra",
-          "tetrahedron": "tetrahedra"}  # fmt: skip
+          "tetrahedron": "tetrahedra"}
 FAMILIES = {
     ("hexahedron", 1, 1, ONE_MESH): "o--", ("tetrahedron", 1, 1, ONE_MESH): "^--",
     ("hexahedron", 2, 1, ONE_MESH): "s-", ("tetrahedron", 2, 1, ONE_MESH): "v-",
     ("hexahedron", 2, 2, ONE_MESH): "D:", ("hexahedron", 2, 1, IN_LEVELS): "P-",
-}  # fmt: skip
+}
 WRONG = 0.5  # an error of the profile that would squeeze all others into a corner of the figure
 SIMPLICES = ("triangle", "tetrahedron")
 

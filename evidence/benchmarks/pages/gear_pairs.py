@@ -115,7 +115,7 @@ PITCH_TABLE = Table(
         Column("cold s", "cold", ".3g"), Column("pitch s", "pitch", ".3g"), Column("MB", "memory_MB", ".0f"),
         Column("error %", "error", "+.2%"), Column("overkill's own %", "reference_error", ".2%"),
     ),
-)  # fmt: skip
+)
 RATIO_TABLE = Table(
     RatioRow,
     (
@@ -124,7 +124,7 @@ RATIO_TABLE = Table(
         Column("bar", lambda row: f"at {'least' if row.is_least else 'most'} {row.bar:g}"), Column("aim", "aim", "g"),
         Column("bar is", lambda row: verdict(row.met), words=True),
     ),
-)  # fmt: skip
+)
 SIZE_TABLE = Table(
     SizeRow,
     (
@@ -133,14 +133,14 @@ SIZE_TABLE = Table(
         Column("s a position", "position", ".3g"), Column("Newton", "iterations", ".0f"),
         Column("MB", "memory_MB", ".0f"),
     ),
-)  # fmt: skip
+)
 PROFILE_TABLE = Table(
     ProfileRow,
     (
         Column("part", "part", words=True), Column("s", "seconds", ".3g"), Column("%", "share", ".1%"),
         Column("calls", "calls"),
     ),
-)  # fmt: skip
+)
 SKIP_TABLE = Table(
     SkipRow,
     (
@@ -151,7 +151,7 @@ SKIP_TABLE = Table(
         Column("times", lambda row: row.long_memory_MB / row.memory_MB, ".2f"),
         Column("difference", "difference", ".1e"), Column("tolerance", "tolerance", ".0e"),
     ),
-)  # fmt: skip
+)
 SPUR_TABLE = Table(
     SpurRow,
     (
@@ -162,7 +162,7 @@ SPUR_TABLE = Table(
         Column("error %", "volume_error", ".2%"),
         Column("3D over 2D", lambda row: f"**{row.volume_seconds / row.seconds:.1f}**"),
     ),
-)  # fmt: skip
+)
 RUN_TABLE = Table(
     RunRow,
     (
@@ -174,7 +174,7 @@ RUN_TABLE = Table(
         Column("bar", "iterations_bar", ".0f"),
         Column("", lambda row: verdict(row.met) if row.has_bar and not row.note else "", words=True),
     ),
-)  # fmt: skip
+)
 WEAR_COST_TABLE = Table(
     WearCostRow,
     (
@@ -182,7 +182,7 @@ WEAR_COST_TABLE = Table(
         Column("sweep s", "sweep", ".3g"), Column(f"{BLOCKS} blocks s", "study", ".3g"),
         Column("whole", lambda row: f"**{row.whole:.2f}**"), Column("bare", "bare", ".2f"),
     ),
-)  # fmt: skip
+)
 WEAR_TABLE = Table(
     WearPrecisionRow,
     (
@@ -190,7 +190,7 @@ WEAR_TABLE = Table(
         Column("refused", "refused"), Column("s", "seconds", ".3g"), Column("error of the depths %", "error", ".2%"),
         Column("of the volume %", "volume_error", "+.2%"),
     ),
-)  # fmt: skip
+)
 MOTION_TABLE = Table(
     MotionRow,
     (
@@ -198,7 +198,7 @@ MOTION_TABLE = Table(
         Column("found", lambda row: f"**{row.found:.3g}**"), Column("bar", lambda row: f"at most {row.bar:g}"),
         Column("bar is", lambda row: verdict(row.met), words=True),
     ),
-)  # fmt: skip
+)
 COSTS: tuple[PageSection[Any], ...] = (
     PageSection("Whole runs", "runs", RUN_TABLE, words=_runs_said),
     PageSection("", "beside", RATIO_TABLE),
@@ -216,7 +216,7 @@ COSTS: tuple[PageSection[Any], ...] = (
     PageSection("", "profile_levels", PROFILE_TABLE, words=_levels_profile_said),
     PageSection("What a scene does not need", "skips", SKIP_TABLE, words=_skips_said),
     PageSection("A spur pair in 2D and in 3D", "spur", SPUR_TABLE, words=_spur_said),
-)  # fmt: skip
+)
 WEAR: tuple[PageSection[Any], ...] = (
     PageSection("Wear", "wear_cost", WEAR_COST_TABLE, words=_wear_said),
     PageSection("", "wear", WEAR_TABLE, figure=figures.wear, caption="Run time against error of wear"),
@@ -227,4 +227,4 @@ MOTION: tuple[PageSection[Any], ...] = (
         words=lambda _: ["CPU seconds without the start of Python, without error bars."],
     ),
     PageSection("Transient contact", "transient", MOTION_TABLE, words=lambda _: [TRANSIENT]),
-)  # fmt: skip
+)

@@ -33,7 +33,7 @@ HITS = Table(
         Column("median bar, %", lambda group: np.median([row.bar_MPa / row.value_MPa for row in group[1]]), ".2%"),
         Column("rotations inside, %", lambda group: _share(group[1], "positions_inside", "positions"), ".0%"),
     ),
-)  # fmt: skip
+)
 """A line a group of rows, with its name."""
 
 

@@ -23,11 +23,11 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 ELEMENT = {
     ("quadrilateral", 1): "CPE4", ("quadrilateral", 2): "CPE8", ("triangle", 1): "CPE3", ("triangle", 2): "CPE6",
     ("hexahedron", 1): "C3D8", ("hexahedron", 2): "C3D20", ("tetrahedron", 1): "C3D4", ("tetrahedron", 2): "C3D10",
-}  # fmt: skip
+}
 NODES = {
     "CPE8": range(8), "CPE6": range(6), "C3D10": (0, 1, 2, 3, 4, 5, 6, 7, 9, 8),
     "C3D20": (*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15),
-}  # fmt: skip
+}
 """The nodes of `MeshData`'s cells that CalculiX's elements have, in its order."""
 FACES = {
     "quadrilateral": ((0, 1), (1, 2), (2, 3), (3, 0)),

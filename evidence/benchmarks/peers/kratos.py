@@ -28,7 +28,7 @@ SOLVER = {
         "solver_type": "amgcl", "smoother_type": "ilu0", "krylov_type": "gmres", "coarsening_type": "aggregation",
         "max_iteration": 500, "tolerance": 1e-8, "scaling": False,
     },
-}  # fmt: skip
+}
 
 
 def main() -> None:
@@ -139,7 +139,7 @@ def _settings(task: Task, job: Path) -> dict[str, Any]:
                 }
             ],
         },
-    }  # fmt: skip
+    }
 
 
 def _fixed(part: str, directions: str, value: list[float]) -> dict[str, Any]:

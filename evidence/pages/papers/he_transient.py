@@ -64,7 +64,7 @@ def figures(runs: Runs) -> Named:
         yield from _motion(f"smeared_{positions}", fact)
     for count in COUNTS:
         (fact,) = _transient(runs, f"count_{count}", f"transient.speeds_rpm=[{CONVERGED}]",
-                             f"transient.modes_per_harmonic={count}", "transient.steady_change=0.0005")  # fmt: skip
+                             f"transient.modes_per_harmonic={count}", "transient.steady_change=0.0005")
         yield from _motion(f"count_{count}", fact)
         yield f"count_{count}_modes", fact["modes"]
 
@@ -139,7 +139,7 @@ def speeds_table(docs: Path) -> str:
     head = (
         "speed [r/min]", *(f"torsional model, {words}" for words in WAYS.values()), "transient, no modes",
         "transient, modes of both bodies", f"the same at {_ratio(f):.3f} times the speed", "mesh periods from statics",
-    )  # fmt: skip
+    )
     return markdown(head, rows)
 
 
@@ -150,9 +150,9 @@ def modes_table(docs: Path) -> str:
         (f"{count}", f"{f[f'count_{count}_modes']:.0f}", f"{f[f'count_{count}_um']:.3f} µm",
          f"{f[f'count_{count}_factor']:.4f}")
         for count in COUNTS
-    ]  # fmt: skip
+    ]
     return markdown(("modes of each harmonic", "modes in all", "transmission error, peak to peak",
-                     "largest mesh force over the load"), rows)  # fmt: skip
+                     "largest mesh force over the load"), rows)
 
 
 def _cell(f: dict[str, float], name: str) -> str:

@@ -102,7 +102,7 @@ def _pair(runs: Runs) -> Named:
     for name in (
         "points", "left_out_percent", "near_reversal_percent", "fitted_shear_median_percent",
         "fitted_shear_most_percent",
-    ):  # fmt: skip
+    ):
         yield f"pair_{name}", facts[name]
 
 
@@ -110,7 +110,7 @@ def _fitted(runs: Runs) -> Named:
     """Zhang's pair in plane strain at three levels: half-ellipses against the pressures as solved."""
     for level in LEVELS:
         folder = _fatigue(runs, f"zhang_{level}", "zhang2023.toml", "pinion.face_width_mm=25", "sweep.positions=12",
-                          f"mesh.level={level}", "output.error_bars=false", "output.pictures=false")  # fmt: skip
+                          f"mesh.level={level}", "output.error_bars=false", "output.pictures=false")
         facts = json.loads((folder / "fatigue.json").read_text(encoding="utf-8"))[0]
         yield f"{level}_median_percent", facts["fitted_shear_median_percent"]
         yield f"{level}_most_percent", facts["fitted_shear_most_percent"]
@@ -133,7 +133,7 @@ def friction_table(docs: Path) -> str:
         "criterion", "place", "depth [µm]", "line contact of the same pressure", "exponent for 3.15",
         "Yang's pinion, largest", "exponent for 3.15", "Yang's pinion, median of its points", "exponent for 3.15",
         "life ratio by its own exponent: largest, median",
-    )  # fmt: skip
+    )
     return markdown(head, rows)
 
 
@@ -162,7 +162,7 @@ def fitted_table(docs: Path) -> str:
         (f"Zhang, plane strain, {level}", _percent(1.0 + 0.01 * f[f"{level}_median_percent"]),
          f"{f[f'{level}_most_percent']:.1f} %")
         for level in LEVELS
-    ]  # fmt: skip
+    ]
     median = _percent(1.0 + 0.01 * f["pair_fitted_shear_median_percent"])
     rows.append(("Yang, standard", median, f"{f['pair_fitted_shear_most_percent']:.1f} %"))
     return markdown(("pair and level", "median", "nine in ten within"), rows)

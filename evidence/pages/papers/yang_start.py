@@ -28,7 +28,7 @@ PICTURE = "yang2022/from_rest.png"
 SETTINGS = (
     f"transient.speeds_rpm=[{SPEED}]", "contact.friction=0.0", 'transient.start="rest"',
     "transient.mesh_periods=2", "transient.tolerance=0.005", "dynamics.backlash_um=1000",
-)  # fmt: skip
+)
 
 
 def figures(runs: Runs, command: Callable[..., list[object]]) -> Named:

@@ -31,7 +31,7 @@ FRICTIONS = LOW, 0.08, 0.11, 0.12, 0.15, 0.2, HIGH
 POSITIONS = 60
 DRIVE = (
     "load.on=wheel", "load.torque_Nm=882.353", "transient.drive=constant_speed", f"sweep.positions={POSITIONS}",
-)  # fmt: skip
+)
 """The torque on the wheel that 250 N·m on the pinion balance."""
 PICTURE, WITH_BARS = "yang2022/at_speed.png", "yang2022/with_error_bars.png"
 SHOWN = "static_peak_to_peak_um", "peak_to_peak_um", "static_max_pressure_MPa", "max_pressure_MPa"
@@ -43,7 +43,7 @@ def command(*settings: str, error_bars: bool = False) -> list[object]:
     output = "output.animation=false", f"output.error_bars={str(error_bars).lower()}"
     set_to = [f"--set={each}" for each in (*DRIVE, *settings, *output)]
     return [*module_run("evolvent", "transient", DEMOS / "yang2022.toml", "--level", "quick", "--overwrite",
-                        "--quiet", *set_to)]  # fmt: skip
+                        "--quiet", *set_to)]
 
 
 def figures(runs: Runs) -> Named:
@@ -138,14 +138,14 @@ def table(docs: Path) -> str:
             f"{f[f'{speed}_moving_before_percent']:+.1f} / {f[f'{speed}_moving_after_percent']:+.1f} %",
         )
         for speed in SPEEDS
-    ]  # fmt: skip
+    ]
     head = (
         "speed [r/min]", "time steps in a period of the pair's own vibration",
         "its frequency over the mesh frequency", "mesh periods until steady", "largest mesh force over the load",
         "peak-to-peak transmission error over statics", "largest pressure over statics",
         "pressure of a tooth: largest difference from statics",
         "friction, μ 0.07 to 0.30: pressure of a tooth at −25° to −10° / 10° to 30°",
-    )  # fmt: skip
+    )
     return markdown(head, rows)
 
 
@@ -167,7 +167,7 @@ def frictions_table(docs: Path) -> str:
             *(shown(f"{speed}_{μ:g}_max_pressure_MPa", 0) for speed in SPEEDS),
         )
         for μ in FRICTIONS
-    ]  # fmt: skip
+    ]
     at = [f"at {speed} r/min" for speed in SPEEDS]
     head = ("μ", "transmission error, peak to peak [µm]: statics", *at, "largest pressure [MPa]: statics", *at)
     return markdown(head, rows)
@@ -179,7 +179,7 @@ def bars_said(docs: Path) -> str:
     swing = {
         (speed, μ): [(f[name], f[f"{name}_error"]) for name in (f"{speed}_{μ:g}_{each}" for each in SHOWN[:2])]
         for speed in SPEEDS for μ in (LOW, HIGH)
-    }  # fmt: skip
+    }
     faster = [f"{speed} r/min, μ = {μ:g}" for (speed, μ), (still, moving) in swing.items() if _apart(still, moving)]
     rougher = [
         f"{at} {speed} r/min" if at else "in statics"

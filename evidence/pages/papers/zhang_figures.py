@@ -75,7 +75,7 @@ def _contact_ratio(pair: GearPair) -> Named:
     def ratio(addendum: float) -> float:
         module = pair.pinion.normal_module
         tips = (gear.reference_diameter + 2.0 * module * (addendum + gear.profile_shift - SHORTENING)
-                for gear in pair.gears)  # fmt: skip
+                for gear in pair.gears)
         pinion, wheel = (replace(gear, tip_diameter=tip) for gear, tip in zip(pair.gears, tips))
         return replace(pair, pinion=pinion, wheel=wheel).transverse_contact_ratio
 
@@ -89,7 +89,7 @@ def _demo(rows: list[Row]) -> Named:
         torque, radius, still = float(row["torque_Nm"]), float(row["rack_tip_radius_modules"]), row["friction"] == "0.0"
         head = f"{row['gear']}_{torque:.0f}_{100 * radius:.0f}_{'still' if still else 'sliding'}"
         for name in ("tension_MPa", "tension_MPa_error", "tension_rotation_deg", "tension_angle_deg",
-                     "compression_MPa", "compression_MPa_error", "at_b_MPa", "equal_shares_b_MPa"):  # fmt: skip
+                     "compression_MPa", "compression_MPa_error", "at_b_MPa", "equal_shares_b_MPa"):
             yield f"{head}_{name}", float(row[name])
         yield f"{head}_b_over_percent", 100.0 * (float(row["equal_shares_b_MPa"]) / float(row["tension_MPa"]) - 1.0)
         if torque == 500.0:
@@ -99,11 +99,11 @@ def _demo(rows: list[Row]) -> Named:
 def _reasons(rows: list[Row]) -> Named:
     """What torque, rack tip radius and friction change."""
     found = {(row["gear"], float(row["torque_Nm"]), round(100.0 * float(row["rack_tip_radius_modules"])),
-              float(row["friction"])): float(row["tension_MPa"]) for row in rows}  # fmt: skip
+              float(row["friction"])): float(row["tension_MPa"]) for row in rows}
     costs = [
         100.0 * (1.0 - found[gear, 500.0, wide, 0.0] / found[gear, 500.0, tight, 0.0])
         for gear in PAPER for tight, wide in pairwise(RADII)
-    ]  # fmt: skip
+    ]
     yield "least_cost_percent", min(costs)
     yield "largest_cost_percent", max(costs)
     for radius in RADII[:2]:
@@ -113,7 +113,7 @@ def _reasons(rows: list[Row]) -> Named:
         change = found[gear, 500.0, RADII[1], 0.05] / found[gear, 500.0, RADII[1], 0.0]
         yield f"{gear}_sliding_percent", 100.0 * (change - 1.0)
     slopes = [[stress / torque for (gear, torque, radius, μ), stress in found.items()
-               if (gear, radius, μ) == (name, RADII[1], 0.0)] for name in PAPER]  # fmt: skip
+               if (gear, radius, μ) == (name, RADII[1], 0.0)] for name in PAPER]
     yield "out_of_proportion_percent", max(100.0 * (max(each) / min(each) - 1.0) for each in slopes)
 
 

@@ -109,14 +109,14 @@ def _checked(known: DriveOutcome, model: TorsionalModel, swept: SpeedSweep) -> D
             ("mesh period of a fold, from the other end", _fold_error(model, swept.branch), FOLDS),
         )
         if not found <= allowed
-    ]  # fmt: skip
+    ]
     return replace(
         known, verdict=DriveVerdict.WRONG if wrong else DriveVerdict.VERIFIED, message="; ".join(wrong),
         states=len(motions), unstable=sum(not each.state.stable for states in swept.coexisting for each in states),
         folds=len(swept.branch.folds), jumps=sum(run.jumped for run in runs),
         subharmonic=sum(run.repeats > 1 for run in runs), unrepeated=sum(run.repeats == 0 for run in runs) - gone,
         escaped=gone, lost=" | ".join(swept.branch.lost), returned=float(returned), scaled=float(scaled), energy=energy,
-    )  # fmt: skip
+    )
 
 
 def _motions(swept: SpeedSweep) -> Iterator[tuple[float, Floats, int]]:

@@ -21,14 +21,14 @@ DRIVES = Table(
         Column("error after a period", "returned", ".1e"), Column("over the amplification", "scaled", ".1e"),
         Column("energy error", "energy", ".1e"), Column("CPU [s]", "cpu", ".1f"), Column("message", "line"),
     ),
-)  # fmt: skip
+)
 BAD = Table(
     DriveOutcome,
     (
         Column("seed", "seed"), Column("kind", "kind", words=True),
         Column("outcome", lambda outcome: outcome.verdict.value, words=True), Column("message", "line", words=True),
     ),
-)  # fmt: skip
+)
 
 
 def drive_summary(outcomes: Sequence[DriveOutcome]) -> str:

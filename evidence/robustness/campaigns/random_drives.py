@@ -103,7 +103,7 @@ def random_drive(seed: int) -> RandomDrive:
     return RandomDrive(
         found, speeds_to_periods(speeds, found.teeth), f"{kind}, {mesh}", settings.damping_ratio,
         settings.backlash / deflection,
-    )  # fmt: skip
+    )
 
 
 def _tooth_pairs(draw: Draw, phases: Floats, stiffness: float, deflection: float) -> _ToothPairs:
@@ -164,7 +164,7 @@ def _settings(draw: Draw, pair: GearPair, excitation: MeshExcitation) -> DriveSe
         * load / mean, draw.often(0.3), draw.one_of(0.0, draw.decades(1e-3, 0.3)),
         mean * draw.decades(0.1, 10.0) if draw.often(0.3) else math.inf,
         draw.one_of("force_surface", "force_surface", "tangent", "secant"),
-    )  # fmt: skip
+    )
 
 
 def _suddenly(draw: Draw, pair: GearPair, smooth: Drive, settings: DriveSettings) -> Drive:
@@ -176,6 +176,6 @@ def _suddenly(draw: Draw, pair: GearPair, smooth: Drive, settings: DriveSettings
     stepped = TorsionalModel(
         equivalent_mass(pair, settings.inertias), model.load, paper_law(side, settings.backlash), model.damping,
         model.damped_apart, model.ground_damping,
-    )  # fmt: skip
+    )
     rest = smooth.moving_stiffness, smooth.equivalent_mass, smooth.body_frequency
     return Drive(stepped, smooth.mean_stiffness, smooth.teeth, settings, *rest)

@@ -100,7 +100,7 @@ def _gears(draw: Draw, seed: int) -> Scene:
         "cycles": cycles, "pinion_mm2_per_N": pinion, "wheel_mm2_per_N": wheel, "report_at_cycles": [],
         "blocks": draw.one_of("implicit", "implicit", "explicit"), "tolerance": draw.decades(0.01, 0.5),
         "first_block_cycles": max(1.0, cycles * _first(draw)),
-    }  # fmt: skip
+    }
     return scene_from_values(values)
 
 
@@ -131,14 +131,14 @@ def _bodies(draw: Draw) -> BodyStudy:
     settings = BlockSettings(
         cycles * _first(draw), draw.decades(0.01, 0.5), travels and draw.often(0.7),
         draw.one_of(np.inf, draw.decades(0.05, 3.0)),
-    )  # fmt: skip
+    )
     depth = draw.one_of(np.inf, draw.decades(0.05, 1.0) * wanted * shape.size)
     refresh = MeshMotion(depth, draw.one_of("harmonic", "elastic"))
     cycle = _travelling(shape, friction) if travels else _to_and_fro(shape, stroke)
     problem = _problem(shape, material, friction)
     return BodyStudy(
         shape.kind, problem, Archard(first, second), cycle, refresh, settings, cycles, shape.size, wanted
-    )  # fmt: skip
+    )
 
 
 def _problem(shape: Shape, material: Material, friction: float) -> Problem:

@@ -20,7 +20,7 @@ SCENES = Table(
         Column("balance error", "balance", ".1e"), Column("mean iterations", "iterations", ".1f"),
         Column("most iterations", "most"), Column("dofs", "dofs"), Column("message", "line"),
     ),
-)  # fmt: skip
+)
 STUDIES = Table(
     WearOutcome,
     (
@@ -28,7 +28,7 @@ STUDIES = Table(
         Column("largest K/H [mm²/N]", "fastest", ".2g"), Column("blocks", "blocks"), Column("refused", "refused"),
         Column("block error", "error", ".2g"), Column("depth", "depth", ".2g"), Column("message", "line"),
     ),
-)  # fmt: skip
+)
 BAD_COLUMNS = (
     Column("seed", "seed"),
     Column("outcome", lambda outcome: outcome.verdict.value, words=True),

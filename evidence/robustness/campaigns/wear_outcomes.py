@@ -126,7 +126,7 @@ def _judged(outcome: WearOutcome, states: Iterator[Accepted], size: float) -> It
         outcome = replace(
             outcome, blocks=outcome.blocks + state.block, refused=outcome.refused + state.refused,
             error=max(outcome.error, state.error), depth=float(state.depth.max()) / size,
-        )  # fmt: skip
+        )
         if faults:
             yield replace(outcome, verdict=WearVerdict.WRONG, message="; ".join(faults))
             return

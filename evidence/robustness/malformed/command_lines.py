@@ -20,7 +20,7 @@ SOUND: Mapping[str, str] = {
     "--level quick|standard|fine": "quick", "--set KEY=VALUE": "load.torque_Nm=100", "--no-skip NAME": "window",
     "--percent LIST": "50,100", "--workers N": "1", "--scheduler ADDRESS": "tcp://127.0.0.1:1",
     "--petsc-options OPTIONS": "-log_view", "--force-N": "500", "--pin-diameter-mm": "6", "--run-in-m": "500",
-}  # fmt: skip
+}
 """Kind of a parameter, as `Parameter.kind` has it -> a value that is right; files of these names are in the folder
 where the commands are tried, of those of options there are none."""
 

@@ -137,7 +137,7 @@ def _file_trials(command: CommandLine) -> Iterator[Trial]:
 def _setting_trials(commands: tuple[CommandLine, ...]) -> Iterator[Trial]:
     """Each key of a scene and of a study with values that it cannot have; the commands that read them take turns."""
     reading = {kind: [each for each in commands if any(parameter.kind == kind for parameter in each.parameters)]
-               for kind in SPOILABLE}  # fmt: skip
+               for kind in SPOILABLE}
     for command, setting in zip(cycle(reading["SCENE.toml"]), scene_settings()):
         yield Trial(command.name, setting[:80], (*command.words(), f"--set={setting}"))
     for command, line in zip(cycle(reading["STUDY.toml"]), study_lines()):
@@ -225,4 +225,4 @@ def _files(folder: Path) -> dict[str, tuple[int, int, str]]:
             hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() and not path.is_symlink() else "",
         )
         for path in sorted(folder.rglob("*"))
-    }  # fmt: skip
+    }

@@ -11,10 +11,10 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import keys_of
 
 NO_FILE = ("", "no\0name", "n" * 5000, "absent", "folder", "pipe", "/dev/null", "/dev/zero", "scene.toml/below",
-           "dangling", "loop")  # fmt: skip
+           "dangling", "loop")
 """Names of what is no file to read."""
 NO_FOLDER = ("", "no\0name", "n" * 5000, "scene.toml", "scene.toml/below", "pipe", "/dev/null", "/proc/evolvent",
-             "loop", "loop/below", "/dev/null/below")  # fmt: skip
+             "loop", "loop/below", "/dev/null/below")
 """Names of what is no folder that may be written, nor can be made."""
 NO_NUMBER = ("", "many", "0", "-1", "nan", "inf", "1e300", "0x10", "5 N", "1,5", "--", "٣٫٣")
 """Texts that are no force, diameter or the like."""
@@ -42,7 +42,7 @@ WRONG: Mapping[str, tuple[str, ...]] = {
     "--force-N": NO_NUMBER,
     "--pin-diameter-mm": NO_NUMBER,
     "--run-in-m": tuple(text for text in NO_NUMBER if text != "0"),
-}  # fmt: skip
+}
 """Kind of a parameter -> values that are refused."""
 SPOILT: Mapping[str, Callable[[bytes], bytes]] = {
     "no content": lambda text: b"",

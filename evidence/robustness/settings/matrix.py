@@ -175,4 +175,4 @@ def patch_cell(patch: Patch, target: float) -> Cell:
 
 SHEETS: tuple[Callable[[], Sheet], ...] = (
     stabiliser, friction_and_load, mesh_ratio, incompressible, initial_gap, ball, distortion, spur_pair_at_steps,
-)  # fmt: skip
+)

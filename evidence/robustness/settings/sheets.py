@@ -73,7 +73,7 @@ def attempt(solve: Callable[[], Cell]) -> Cell:
 def sheet_of(
     names: tuple[str, str, str], rows: tuple[str, Sequence[object]], columns: tuple[str, Sequence[object]],
     solve: Callable[[int, int], Cell],
-) -> Sheet:  # fmt: skip
+) -> Sheet:
     """All combinations.
 
     names: name, title, meaning of the error.
@@ -98,7 +98,7 @@ def write_sheet(sheet: Sheet, path: Path) -> None:
         [row, column, f"{cell.iterations:g}", f"{cell.error:.3g}", cell.refused]
         for row, cells in zip(sheet.rows, sheet.cells, strict=True)
         for column, cell in zip(sheet.columns, cells, strict=True)
-    ])  # fmt: skip
+    ])
 
 
 def draw(sheet: Sheet) -> Figure:

@@ -169,7 +169,7 @@ def _ripples(axes: Axes, cases: list[Ironed], halved: Ironed) -> None:
         off = 100.0 * (case.reaction[:, 1] / smooth - 1.0)
         axes.plot(((case.x - case.x[0]) / ELEMENT)[here], off[here], ".-", ms=3, lw=0.9, color=colour, label=label)
     axes.set(xlim=(0, DRAGGED), ylim=(-0.25, 0.42), xlabel="dragged, in elements of the block",
-             ylabel="off its parabola [%]")  # fmt: skip
+             ylabel="off its parabola [%]")
     axes.legend(loc="upper left", ncols=2, fontsize=8)
 
 
@@ -183,7 +183,7 @@ def _stress(axes: Axes, case: Ironed) -> None:
         corners.append((body.mesh.points[:, :2] + u + shift)[body.mesh.cells[:, :4]])
         values.append(von_mises(cell_stress(body.mesh, body.material, u)))
     shown = PolyCollection(list(np.concatenate(corners)), array=np.concatenate(values), cmap="turbo",
-                           edgecolors=(0, 0, 0, 0.3), linewidths=0.3)  # fmt: skip
+                           edgecolors=(0, 0, 0, 0.3), linewidths=0.3)
     axes.add_collection(shown)
     axes.grid(visible=False)
     axes.annotate("", (2.1, 1.0), (1.3, 1.0), arrowprops={"arrowstyle": "->", "color": "white", "lw": 1.5})

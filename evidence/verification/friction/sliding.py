@@ -208,9 +208,9 @@ def _surface(axes: Axes, cases: list[Slid]) -> None:
         at, computed = case.surface(0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0))
         axes.plot(at, computed, "o", ms=2.6, color=colour, label=f"h = b/{case.cells}")
     axes.annotate("+2μp0 at the trailing edge", (-1.0, 2.0 * CASE.friction), (-0.55, 0.62), color=INK,
-                  arrowprops={"arrowstyle": "->", "color": INK}, va="center")  # fmt: skip
+                  arrowprops={"arrowstyle": "->", "color": INK}, va="center")
     axes.set(xlim=(-2.0, 2.0), ylim=(-1.35, 0.85), xlabel="x / b (the cylinder slides to the right)",
-             ylabel="σ_xx / p0 on the surface")  # fmt: skip
+             ylabel="σ_xx / p0 on the surface")
     axes.legend(loc="lower left")
 
 

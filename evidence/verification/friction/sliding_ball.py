@@ -133,7 +133,7 @@ def _claims(ball: SlidBall) -> list[Claim]:
             float(von_mises(known).max()) / PEAK, 0.01,
         ),
         reference.bound("stress in the cells, relative L2 error", _error(volume, cells, known), 0.03),
-    ]  # fmt: skip
+    ]
 
 
 def _error(volume: Floats, found: Floats, known: Floats) -> float:

@@ -175,7 +175,7 @@ def _shares(axes: Axes, pair: GearPair, computed: Shares, degrees: float) -> Non
         axes.text(x, 1.09, name, ha="center", color=INK)
     axes.annotate("", (-0.5 * ratio, 0.06), (0.5 * ratio, 0.06), arrowprops={"arrowstyle": "<->", "color": WHEEL})
     axes.text(0.0, 0.09, f"carries load over {degrees:.2f}°: contact ratio {ratio:.3f} (rigid {2 * half:.3f})",
-              ha="center", color=WHEEL)  # fmt: skip
+              ha="center", color=WHEEL)
     axes.set(ylim=(0.0, 1.18), ylabel="share of the load")
     axes.legend(loc="center", bbox_to_anchor=(0.27, 0.82))
 
@@ -186,4 +186,4 @@ def _deviation(axes: Axes, pair: GearPair, computed: Shares) -> None:
     off = np.where(_double(pair, computed.roll), computed.share - pedrero(computed.roll, pair), np.nan)
     axes.plot(computed.roll, off, "o-", ms=3.0, lw=0.8, color=TEETH[0])
     axes.set(xlim=(-1.05, 1.05), ylim=(-0.06, 0.06), xlabel="roll distance from the pitch point, in base pitches",
-             ylabel="off Pedrero's")  # fmt: skip
+             ylabel="off Pedrero's")

@@ -113,7 +113,7 @@ def verify() -> Verification:
         ),
         lambda figure: _draw(figure, spur, helical, bent, light),
         "Exact is zero; what is left comes from deflection: teeth that bear on their tip edges before their time",
-    )  # fmt: skip
+    )
 
 
 def _draw(figure: Figure, spur: Ratios, helical: Ratios, bent: Ratios, light: Ratios) -> None:

@@ -121,7 +121,7 @@ def verify() -> Verification:
         ),
         lambda figure: draw(figure, courses, errors),
         "As long as the contact stays closed, halving the time step quarters the error",
-    )  # fmt: skip
+    )
 
 
 def draw(figure: Figure, courses: dict[int, Course], errors: Floats) -> None:
@@ -146,6 +146,6 @@ def _force(axes: Axes, courses: dict[int, Course]) -> None:
     axes.plot(1e6 * DURATION * fine, load(fine), color=INK, lw=1.0, ls="--", label="the load")
     axes.plot(1e6 * DURATION * share, courses[REFERENCE].force / static, color=PINION, label=f"{REFERENCE} time steps")
     axes.plot(1e6 * DURATION * share, courses[STEPS[0]].force / static, "o", color=WHEEL, ms=4,
-              label=f"{STEPS[0]} time steps")  # fmt: skip
+              label=f"{STEPS[0]} time steps")
     axes.set(xlabel="time [µs]", ylabel="contact force / static force", ylim=(0.0, None))
     axes.legend(loc="lower center")

@@ -69,7 +69,7 @@ def verify(impacts: int = IMPACTS, short: int = SHORT, phases: int = PHASES) -> 
 def _statement(
     kept: Mapping[Setting, Bounces], runs: Mapping[Setting, Bounces], blows: Mapping[tuple[float, int], Floats],
     phases: int,
-) -> str:  # fmt: skip
+) -> str:
     rows = []
     for radius in RADII:
         each = [blows[radius, steps] for steps in STEPS]
@@ -85,7 +85,7 @@ def _statement(
         impacts=plain.impacts, left=100.0 * plain.left, setting=NO_MODES,
         with_modes=WITH_MODES, left_with=100.0 * moving.left, impacts_with=moving.impacts,
         least=100.0 * LEAST, phases=phases, table="; ".join(rows),
-    )  # fmt: skip
+    )
 
 
 def _conserved(kept: Mapping[Setting, Bounces], impacts: int) -> list[Claim]:

@@ -46,7 +46,7 @@ def check_crossing(gear: GearGeometry) -> None:
     require(
         not math.isnan(gear.rack_form_roll_length), key, value, "a fillet that ends on the involute",
         "Lower the protuberance, or raise the profile shift.",
-    )  # fmt: skip
+    )
 
 
 def check_tip_edge(gear: GearGeometry) -> None:
@@ -65,13 +65,13 @@ def check_tip_edge(gear: GearGeometry) -> None:
         form > gear.root_form_diameter and land >= LEAST_LAND * gear.normal_module, key, value,
         f"an edge that leaves an involute and a tip land of {LEAST_LAND * gear.normal_module:.4g} mm (it leaves "
         f"{max(land, 0.0):.4g} mm)", "Make it smaller.",
-    )  # fmt: skip
+    )
     steepest = math.acos(min(1.0, gear.base_diameter / form))
     require(
         not chamfer or steepest < STEEPEST_FLANK, key, value,
         f"none where the flank leans {math.degrees(steepest):.3g}° at the tip: a chamfer of 45° cuts nothing there",
         "Give a rounding instead.",
-    )  # fmt: skip
+    )
 
 
 def check_support(gear: GearGeometry) -> None:
@@ -88,13 +88,13 @@ def check_support(gear: GearGeometry) -> None:
         least <= support.width <= face_width, "support_width", support.width,
         f"{least:.6g} to {face_width:.6g} mm, the face width",
         "Leave it out where the gear is held over its whole face.",
-    )  # fmt: skip
+    )
     most = 0.5 * (face_width - support.width)
     require(
         math.isfinite(support.offset) and abs(support.offset) <= most + 1e-9 * face_width,
         "support_offset", support.offset, f"{-most:.6g} to {most:.6g} mm: the support lies within the face",
         "It is the middle of the support, seen from mid-face.",
-    )  # fmt: skip
+    )
 
 
 def check_web(gear: GearGeometry) -> None:
@@ -108,13 +108,13 @@ def check_web(gear: GearGeometry) -> None:
         LEAST_WEB * face_width <= web.thickness <= face_width, "web_thickness", web.thickness,
         f"{LEAST_WEB * face_width:.6g} to {face_width:.6g} mm, the face width",
         "It is the web's thickness along the axis; leave it out for a full ring.",
-    )  # fmt: skip
+    )
     most = 0.5 * (face_width - web.thickness)
     require(
         abs(web.offset) <= most + 1e-9 * face_width, "web_offset", web.offset,
         f"{-most:.6g} to {most:.6g} mm: the web lies within the face",
         "It is the middle of the web, seen from mid-face.",
-    )  # fmt: skip
+    )
     _check_radii(gear, web)
 
 
@@ -129,17 +129,17 @@ def _check_radii(gear: GearGeometry, web: Web) -> None:
             least <= inner <= largest, "hub_diameter", inner,
             f"{least:.6g} to {largest:.6g} mm, between the bore, {bore:.6g} mm, and the rim",
             "Leave it out where the web reaches the bore.",
-        )  # fmt: skip
+        )
     least, most = SMALLEST_RIM * module, 0.5 * (gear.root_diameter - inner) - LEAST_RADIAL * module
     within = "bore" if web.hub_diameter is None else "hub"
     require(
         least <= web.rim_thickness <= most, "rim_thickness", web.rim_thickness,
         f"{least:.6g} to {most:.6g} mm: outside the {within}, {inner:.6g} mm across, it leaves room for a web",
         f"Make the rim thinner or the {within} smaller, or leave out the web.",
-    )  # fmt: skip
+    )
     if web.hub_diameter is None:
         require(
             gear.support.width is None, "support_width", gear.support.width,
             "none where the web reaches the bore: there it is held over its thickness",
             "Leave it out, or give the diameter of the hub that sits on the shaft.",
-        )  # fmt: skip
+        )

@@ -87,7 +87,7 @@ class GearParameters(GearGeometry):
             addendum_coefficient=addendum_coefficient, dedendum_coefficient=dedendum_coefficient,
             tip_shortening_coefficient=tip_shortening_coefficient, helix_angle_deg=helix_angle_deg,
             profile_shift=profile_shift, tooth_thickness_allowance_um=tooth_thickness_allowance_um,
-        )  # fmt: skip
+        )
         if rack_tip_radius_coefficient is not None:
             require_numbers(rack_tip_radius_coefficient=rack_tip_radius_coefficient)
         check_angles(normal_pressure_angle_deg, helix_angle_deg)

@@ -256,7 +256,7 @@ class GearGeometry:
         return RackTip(
             self.rack_tip_half_land, self.rack_tip_radius - depth, self.rack_tip_radius, share * angle,
             self.reference_diameter / 2.0, math.pi / self.z, math.cos(self.helix_angle),
-        )  # fmt: skip
+        )
 
     @cached_property
     def form_direction(self) -> float | None:

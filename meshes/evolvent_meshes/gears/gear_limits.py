@@ -65,7 +65,7 @@ def check_types(gear: GearGeometry) -> None:
         tip_diameter=gear.tip_diameter, root_diameter=gear.root_diameter, rack_tip_radius=gear.rack_tip_radius,
         tip_chamfer_um=gear.tip_chamfer_um, tip_rounding_um=gear.tip_rounding_um,
         protuberance_um=gear.protuberance_um, bore_diameter=gear.bore_diameter,
-    )  # fmt: skip
+    )
 
 
 def check_numbers(gear: GearGeometry) -> None:

@@ -41,7 +41,7 @@ def _check_profile(gear: GearGeometry) -> None:
         _check_between(
             "tip_relief_start_diameter", given.tip_relief_start_diameter, low, high,
             "Say where on the involute the relief starts.",
-        )  # fmt: skip
+        )
     control = given.profile_control_diameter
     if control is not None and not given.amounts.keys().isdisjoint(FROM_CONTROL_DIAMETER):
         remedy = "It is where the evaluated profile begins."

@@ -23,7 +23,7 @@ from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, FACET_SHAPE, REVERSED
 ELEMENT_TYPES: dict[int, tuple[str, int]] = {
     1: ("interval", 1), 2: ("triangle", 1), 3: ("quadrilateral", 1), 4: ("tetrahedron", 1), 5: ("hexahedron", 1),
     8: ("interval", 2), 9: ("triangle", 2), 10: ("quadrilateral", 2), 11: ("tetrahedron", 2), 12: ("hexahedron", 2),
-}  # fmt: skip
+}
 """Element type of gmsh -> (shape, order)."""
 _TYPE_NUMBERS = {shape: number for number, shape in ELEMENT_TYPES.items()}
 _SERENDIPITY = (16, 17)

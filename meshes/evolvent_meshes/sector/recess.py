@@ -28,7 +28,7 @@ def without_recess(gear: GearParameters, mesh: MeshData) -> tuple[MeshData, Ints
         name: number[nodes[is_used[nodes[:, -1]]]] for name, nodes in facets.items()
     }
     volumes = {name: np.searchsorted(np.flatnonzero(~beside), cells[~beside[cells]]) for name, cells in
-               mesh.volumes.items()}  # fmt: skip
+               mesh.volumes.items()}
     return MeshData(mesh.points[used], mesh.shape, mesh.order, number[kept], groups, volumes), used
 
 

@@ -103,7 +103,7 @@ class SectorResolution:
             )
         counts = (
             self.profile_elements, self.face_elements, self.core_elements, self.neck_elements, *self.body_elements
-        )  # fmt: skip
+        )
         if min(counts) < 1 or min(*self.layer_depths, self.end_size_ratio) <= 0:
             raise MeshError(f"sector resolution: wanted positive counts, layer depths and end ratio, found {self}")
         if min(self.fillet_elements, self.back_elements) <= self.neck_elements:

@@ -43,7 +43,7 @@ from evolvent_meshes.shapes.lengths import check_counts, check_lengths, check_tu
 def rectangle(
     width: float, height: float, nx: int, ny: int, order: int = 2, shape: str = "quadrilateral",
     origin: tuple[float, float] = (0.0, 0.0),
-) -> MeshData:  # fmt: skip
+) -> MeshData:
     """Uniform rectangle of nx × ny cells.
 
     width, height: [mm].

@@ -74,7 +74,7 @@ def refuse_less_than_the_body(member: Member, inertia: float, body: float, remed
             f"at least that of the meshed body, {1e-3 * body:.4g} kg m², which gives way with all of its mass",
             Words(f"{1e-3 * inertia:.4g} kg m²"),
             f"delete the key for the body's own, enlarge the bore, or take {remedy}",
-        )  # fmt: skip
+        )
 
 
 def _swept(points: Floats) -> float:

@@ -155,7 +155,7 @@ class MethodB:
 
 def method_b(
     pair: GearPair, mass: float, force: float, accuracy: Accuracy, moduli: tuple[float, float] = (STEEL, STEEL)
-) -> MethodB:  # fmt: skip
+) -> MethodB:
     """Of a pair under a force.
 
     mass: equivalent one along the line of action [t]; over the face width it is m_red (Eq. 7), of whatever turns

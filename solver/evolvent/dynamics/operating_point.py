@@ -182,7 +182,7 @@ class OperatingPoint:
     def _operation(
         self, model: GearModel, excitation: MeshExcitation, shares: tuple[float, ...], before: Start | None,
         positions: Positions | None,
-    ) -> Operation:  # fmt: skip
+    ) -> Operation:
         # every rank follows the motion: it takes less than sending it
         pair = drive(model.pair, excitation, float(excitation.loaded.forces[shares.index(1.0)]), self.settings)
         period = float(speeds_to_periods(np.array([self.speed]), pair.teeth)[0])

@@ -62,7 +62,7 @@ class OperationFigures:
             UM * float(np.ptp(excitation.unloaded_error)), UM * float(np.ptp(excitation.loaded.errors[:, number])),
             UM * found.equivalent_amplitude, pair.model.load, found.largest_force,
             operation.heaviest_torque_share, found.smallest_force, found.apart, operation.lifted, operation.repeats,
-        )  # fmt: skip
+        )
 
 
 def operation_warnings(found: Sequence[OperationFigures]) -> list[str]:

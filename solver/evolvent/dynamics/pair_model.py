@@ -116,7 +116,7 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
         body.mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
         settings.damped_apart, settings.ground_damping_ratio * critical, body.stiffer * load, body.bore,
         teeth=pair.pinion.z,
-    )  # fmt: skip
+    )
     rigid = equivalent_mass(pair, settings.inertias)
     return Drive(model, mean, pair.pinion.z, settings, moving, rigid, body.next_frequency / (2.0 * math.pi))
 

@@ -116,7 +116,7 @@ class Body:
                 refuse(
                     f"{self.name}, rigid coupling", f"a rigid motion of {known}, as the body is {d}D",
                     freedom.direction, "name one of these",
-                )  # fmt: skip
+                )
         if self.rigid and len(self.rigid.centre) < d:
             refuse(f"{self.name}, rigid coupling", f"a centre of {d} coordinates", self.rigid.centre, "write (x, y, z)")
 

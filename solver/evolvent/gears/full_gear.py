@@ -67,7 +67,7 @@ class WholeGear:
         """See `ring_compliance.Compliance.jumps`."""
         dofs = [self._dofs(np.full(len(part.nodes), part.tooth), part.nodes) for part in parts]
         rows = [[part.jumps(other.jumps(self.matrix[np.ix_(j, i)]).T) for other, j in zip(parts, dofs)]
-                for part, i in zip(parts, dofs)]  # fmt: skip
+                for part, i in zip(parts, dofs)]
         return np.block(rows)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:

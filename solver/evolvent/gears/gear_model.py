@@ -110,7 +110,7 @@ class CondensedGears:
         model = GearModel(
             problem.pair, (pinion, wheel), problem.contact_teeth, gear_load(problem), problem.window_half_width,
             problem.options.friction_terms, problem.options.deflected_flanks, problem.pitches,
-        )  # fmt: skip
+        )
         return Preparation(model, self.mesh_seconds, self.seconds)
 
 
@@ -171,7 +171,7 @@ def _condensed(
         return condensed_gear(
             problem.pair.gears[member], plain[member], problem.materials[member], problem.contact_teeth, member,
             member is Member.PINION, whole=problem.options.whole_gears, threads=cores.used,
-        )  # fmt: skip
+        )
 
     built = together(comm, lambda: {member: {0: condensed(member)} for member in plain}, cores.lent)
     if comm.allreduce(len(levelled)):

@@ -106,7 +106,7 @@ def coarse_gear(problem: GearProblem, member: Member, sector: LevelledMesh, thre
 def corrected_gears(
     problem: GearProblem, coarse: GearBody, sector: LevelledMesh, flank: FlankPatches,
     responses: Mapping[PatchName, TimedResponse],
-) -> dict[int, GearBody]:  # fmt: skip
+) -> dict[int, GearBody]:
     """The gear with so many levels of its flank as each count of `flank` says. responses: of all patches."""
     begin, refined = time.perf_counter(), flank.refined(responses)
     pitch, safety = 2.0 * np.pi / coarse.gear.z, flank.flux_safety
@@ -120,7 +120,7 @@ def corrected_gears(
         bodies[count] = replace(
             coarse, gear=gear, flank=modified_flank(fine.surface, gear), traction=traction, chain=ring,
             levels=sector.levels[:count],
-        )  # fmt: skip
+        )
     seconds = coarse.condense_seconds + sum(each.seconds for each in responses.values()) + time.perf_counter() - begin
     return {count: replace(body, condense_seconds=seconds) for count, body in bodies.items()}
 

@@ -26,7 +26,7 @@ NamedPatch = tuple[Member, PatchName]
 def two_level_pair(
     problem: GearProblem, sectors: Mapping[Member, LevelledMesh], counts: Mapping[Member, Sequence[int]],
     comm: MPI.Comm, cores: Cores,
-) -> dict[Member, dict[int, GearBody]]:  # fmt: skip
+) -> dict[Member, dict[int, GearBody]]:
     """The gears whose sectors this rank has, with so many levels as each of the counts says: see `two_level_gear`.
     Collective: each rank has other sectors.
 

@@ -154,7 +154,7 @@ def engagement(run: RunData, index: int, inner: tuple[float, float] | None = Non
             for peak in limits for angle in [peak.roll_distance / radius]
         ),
         relief_starts=tuple(start.roll_distance / radius for start in relief_starts(run.pair)),
-    )  # fmt: skip
+    )
 
 
 def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[LinePeak]:

@@ -22,7 +22,7 @@ WRITTEN = (
     str(LOG), *SCENE_FILES, "summary.json", "positions.csv", "teeth.csv", "wear.csv", "wear.json",
     "results/gears.npz", "results/position_*.npz", "results/state.npz", "results/errors.npz", "results/wear.npz",
     "results/cost.json",
-)  # fmt: skip
+)
 """Files that a run writes for every scene. Fields and pictures are checked one by one when they are written."""
 STUDY = "study.json"
 """In the folder of a study: what its table is of."""

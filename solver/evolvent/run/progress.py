@@ -28,7 +28,7 @@ class Progress:
         columns = (
             SpinnerColumn(finished_text="[green]✓"), TextColumn("{task.description:<19}"), BarColumn(bar_width=24),
             _Count(), TimeElapsedColumn(), _Left(),
-        )  # fmt: skip
+        )
         self._bars = Bars(*columns, console=console, disable=hidden or self._plain is not None)
         self._begun = time.monotonic()
 

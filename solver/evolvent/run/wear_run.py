@@ -128,7 +128,7 @@ def certify_positions(state: PitchState) -> None:
 def _write(
     scene: Scene, archive: Archive, gears: GearWear, meshes: MeshRecord, stage: StudyState, study: StudyCheckpoint,
     ranks: int, cost: Cost,
-) -> None:  # fmt: skip
+) -> None:
     """Writes the worn pair at a report; then the state of the study, whose file marks the block as complete."""
     state = stage.state
     if stage.report and state.cycles == 0.0:

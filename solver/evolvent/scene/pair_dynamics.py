@@ -56,7 +56,7 @@ def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
     return DriveSettings(
         moments_of_inertia(pair, section), section.damping_ratio, backlash, section.damped_apart,
         section.ground_damping_ratio, series, section.mesh,
-    )  # fmt: skip
+    )
 
 
 def operating_point(scene: Scene) -> OperatingPoint | None:

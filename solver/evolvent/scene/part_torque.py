@@ -23,4 +23,4 @@ def under_torque(scene: Scene, torque: float, mesh_torques: tuple[float, float] 
         part = f"{shown(own)}, at {100.0 * torque / own:.6g} % of it "
         raise SceneError([
             replace(each, found=part + each.found) if each.key == "load.torque_Nm" else each for each in error.problems
-        ]) from error  # fmt: skip
+        ]) from error

@@ -123,7 +123,7 @@ class RootPassage:
             float(course[k]), float(self.angles[k]), float(self.root.radii[j]), float(self.root.heights[j]),
             float(self.root.tangent_angles[j]), 0.5 * float(course.max() + course.min()), 0.5 * float(np.ptp(course)),
             float(self.load_share[k]), float(self.whole_load[k]),
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True, eq=False)

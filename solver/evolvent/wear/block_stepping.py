@@ -160,7 +160,7 @@ class Block(Generic[E]):
 
 def initial_wear_state(
     model: WearModel[E], depth: Floats, settings: BlockSettings, cycles: float = 0.0
-) -> WearState[E]:  # fmt: skip
+) -> WearState[E]:
     """The state at depths (n,) [mm] from which a study starts. Raises NotConverged, SearchError."""
     return WearState(cycles, depth, model.evaluate(depth), None, settings.first)
 
@@ -219,7 +219,7 @@ def _attempt(
     error = float(areas @ np.abs(difference)) / volume if volume > 0.0 else 0.0
     after = WearState(
         state.cycles + length, state.depth + worn_off, end, PreviousBlock(start, length), length
-    )  # fmt: skip
+    )
     return after, error
 
 

@@ -206,7 +206,7 @@ class _WornStep:
 
 def depth_per_cycle(
     laws: Sequence[Archard], problem: Problem, states: Sequence[Sequence[SlidingContact]]
-) -> SideDepths:  # fmt: skip
+) -> SideDepths:
     """Depth per cycle [mm] on every worn side, summed over its contacts and their sliding states."""
     total: SideDepths = {}
     for contact, law, sliding in zip(problem.contacts, laws, states):

@@ -62,7 +62,7 @@ class WornSurface:
 def worn_mesh(
     mesh: MeshData, worn: Collection[WornSurface], held: Collection[str], interior: InteriorMotion = "elastic",
     least_quality: float = 0.05,
-) -> MeshData:  # fmt: skip
+) -> MeshData:
     """The mesh with its worn surfaces moved inwards by their depths, and the interior following.
 
     held: facet groups that stay at rest.

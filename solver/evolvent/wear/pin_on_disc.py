@@ -49,7 +49,7 @@ class PinOnDisc:
         for name, value, (low, high), unit in (
             ("force on the pin (--force-N)", self.force, FORCES, "N"),
             ("diameter of the pin (--pin-diameter-mm)", self.diameter, DIAMETERS, "mm"),
-        ):  # fmt: skip
+        ):
             if not low <= value <= high:
                 raise TableError(name, f"a number from {low:g} to {high:g} {unit}", f"{value:g}", f"give it in {unit}")
 

@@ -14,7 +14,7 @@ def run_folder(folder: Path, force: float) -> Path:
     folder.mkdir()
     (folder / "teeth.csv").write_text(f"tooth,force_N,seconds\nleft,100.0,1.5\nright,{force!r},2.5\n")
     summary = {"frictions": [{"load": 8.0, "load_error": 0.5}, {"load": force, "load_error": 0.5}], "title": "pair",
-               "teeth": 17}  # fmt: skip
+               "teeth": 17}
     (folder / "summary.json").write_text(json.dumps(summary))
     return folder
 
@@ -24,7 +24,7 @@ def test_numbers_of_tables_and_summaries_are_figures(tmp_path: Path) -> None:
     assert figures(run_folder(tmp_path / "one", 50.0)) == {
         "teeth.csv: force_N": [100.0, 50.0], "summary.json: frictions.load": [8.0, 50.0],
         "summary.json: frictions.load_error": [0.5, 0.5],
-    }  # fmt: skip
+    }
 
 
 def test_difference_is_relative_to_the_largest_value(tmp_path: Path) -> None:

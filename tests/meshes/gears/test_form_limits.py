@@ -45,7 +45,7 @@ def test_body_of_a_web() -> None:
     those of the full ring."""
     gear, hub, bored, full = (
         he_gear(), *(replace(he_gear(), web=each) for each in (Web(8.0, 6.0, 90.0, 1.0), Web(8.0, 6.0), Web(20.0, 6.0)))
-    )  # fmt: skip
+    )
     assert hub.web is not None and hub.web.ends == (-3.0, 5.0)
     assert (hub.rim_thickness, hub.web_diameters, hub.has_rim) == (6.0, (130.5, 90.0), True)
     assert bored.web_diameters == (130.5, 70.0)

@@ -27,7 +27,7 @@ WRONG: list[tuple[str, dict[str, Any], str, float | None]] = [
     ("a number as text", {"twist_um": "5"}, "twist_um", None),
     ("a place as text", ROOT | {"root_relief_end_diameter": "148"}, "root_relief_end_diameter", None),
     ("not a number", {"helix_slope_um": float("nan")}, "helix_slope_um", None),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("given", "key", "found"), [each[1:] for each in WRONG], ids=[each[0] for each in WRONG])

@@ -32,7 +32,7 @@ def from_rack(allowance: float) -> GearParameters:
     return GearParameters.from_rack(
         z=25, normal_module=2.0, normal_pressure_angle_deg=20.0, helix_angle_deg=18.0, profile_shift=0.2,
         tooth_thickness_allowance_um=allowance, face_width=10.0, bore_diameter=20.0,
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("pair", [yang(), he(), zhang()], ids=["Yang", "He", "Zhang"])

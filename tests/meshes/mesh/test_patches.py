@@ -17,7 +17,7 @@ def test_cells_near_have_a_node_within_reach() -> None:
     centres = mesh.points[mesh.cells[near, -1]]
     assert sorted(map(tuple, centres[:, :2])) == [
         (0.5, 3.5), (1.5, 2.5), (1.5, 3.5), (2.5, 2.5), (2.5, 3.5), (3.5, 2.5), (3.5, 3.5), (4.5, 3.5),
-    ]  # fmt: skip
+    ]
 
 
 def test_patch_keeps_groups_and_names_its_cut() -> None:
@@ -28,7 +28,7 @@ def test_patch_keeps_groups_and_names_its_cut() -> None:
     patch = cut_out(mesh, np.flatnonzero((centres[:, 0] < 2.0) & (centres[:, 1] > 1.0)))
     assert {name: len(rows) for name, rows in patch.mesh.facets.items()} == {
         "left": 2, "right": 0, "bottom": 0, "top": 2, CUT: 4,
-    }  # fmt: skip
+    }
     assert np.array_equal(mesh.points[patch.nodes], patch.mesh.points)
     cut = patch.mesh.points[patch.mesh.facets[CUT][:, -1]]
     assert np.all((np.abs(cut[:, 0] - 2.0) < 1e-12) | (np.abs(cut[:, 1] - 1.0) < 1e-12))
@@ -43,4 +43,4 @@ def test_patch_of_a_patch_is_cut_on_both() -> None:
     second = cut_out(first.mesh, np.flatnonzero(inner))
     assert {name: len(rows) for name, rows in second.mesh.facets.items()} == {
         "left": 1, "right": 0, "bottom": 0, "top": 2, CUT: 3,
-    }  # fmt: skip
+    }

@@ -30,7 +30,7 @@ def test_modified_flank_is_an_offset_along_the_normal() -> None:
     gear, _ = gear_and_start("yang pinion")
     relieved = replace(gear, modifications=Modifications(
         tip_relief_um=2.0, tip_relief_start_diameter=45.0, lead_crowning_um=1.0,
-    ))  # fmt: skip
+    ))
     points = on_flank(relieved, nodes_of(sector("yang pinion"), "flank"))
     flank, plain = Flank(relieved), Flank(gear)
     roll = flank.roll_length(np.hypot(points[:, 0], points[:, 1]))

@@ -25,7 +25,7 @@ def outline(gear: GearParameters) -> Floats:
         polar(np.full(400, root), np.linspace(profile.sector_angle, profile.root_angle, 400)), profile.fillet(t),
         profile.involute_at_roll(np.linspace(*profile.roll_lengths, 400)),
         profile.edge_line(t), polar(np.full(400, tip), np.linspace(profile.tip_angle, 0.0, 400)),
-    ])  # fmt: skip
+    ])
     tooth = np.concatenate([mirror(half), half[::-1]])
     turns = 2.0 * np.pi * np.arange(gear.z) / gear.z
     return np.concatenate([tooth @ np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]) for a in turns])

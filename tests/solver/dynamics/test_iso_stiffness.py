@@ -37,7 +37,7 @@ def example_pair() -> GearPair:
     given: dict[str, Any] = {
         "normal_module": 8.0, "helix_angle_deg": 15.8, "face_width": 100.0, "dedendum_coefficient": 1.4,
         "bore_diameter": 60.0,
-    }  # fmt: skip
+    }
     return GearPair(gear(17, 0.145, hand=1, **given), gear(103, 0.0, hand=-1, **given), 500.0)
 
 
@@ -65,7 +65,7 @@ def test_helical_example_of_the_standard() -> None:
 @pytest.mark.parametrize(("thickness", "rim", "exact"), [
     (5.0, 6.0, 1.0 + math.log(0.25) / (5.0 * math.exp(0.4))), (2.0, 6.0, 1.0 + math.log(0.2) / (5.0 * math.exp(0.4))),
     (5.0, 9.0, 1.0 + math.log(0.25) / (5.0 * math.exp(0.6))), (20.0, 6.0, 1.0),
-])  # fmt: skip
+])
 def test_blank_factor_of_webs(thickness: float, rim: float, exact: float) -> None:
     """By hand for b = 20 and m_n = 3 mm: C_R = 1 + ln(b_s/b)/(5 e^(s_R/5m_n)), with b_s/b of 0.2 at least, 1 of a web
     as wide as the face; c' has that of the softer gear, whichever it is."""

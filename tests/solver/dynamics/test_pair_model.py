@@ -35,7 +35,7 @@ def driven(error: Floats, backlash: float, first: int = 0) -> Drive:
     loaded = LoadedMesh(
         2.0 * np.pi / 50.0 * (first + np.arange(POSITIONS)) / POSITIONS, forces, error[:, None] + forces / STIFFNESS,
         np.full((POSITIONS, 3), STIFFNESS),
-    )  # fmt: skip
+    )
     return drive(PAIR, MeshExcitation(error, loaded), LOAD, DriveSettings((7.4, 7.4), 0.05, backlash))
 
 
@@ -78,7 +78,7 @@ def test_positions_may_begin_anywhere() -> None:
 @pytest.mark.parametrize(("scene", "settings"), [
     ("he2022", ("pinion.tip_relief_um=20", "wheel.tip_relief_um=20")),  # kinks beside which a spline rings
     ("yang2022", ("pair.misalignment_um=30", "mesh.level=quick")),  # flanks that stand proud
-])  # fmt: skip
+])
 def test_room_is_known_before_contact_is_solved(scene: str, settings: tuple[str, ...]) -> None:
     """Without backlash the flanks lack room by their unloaded errors alone: the splines of `drive` overlap by the same
     figure to the nanometre, and with so much backlash they have room as they are. With a nanometre less they overlap.

@@ -31,7 +31,7 @@ def test_gears_are_softer_the_less_of_the_bore_is_held() -> None:
             [], ["wheel.support_width_mm=8"], ["wheel.support_width_mm=4"],
             ["wheel.support_width_mm=2", "wheel.support_offset_mm=1"],
         )
-    )  # fmt: skip
+    )
     assert whole == wide
     assert 1.01 * wide < half < 1.3 * wide
     assert half < quarter

@@ -55,7 +55,7 @@ def same_cells(own: GearProblem, mesh: MeshData) -> GearBody:
     points[flank] = on_flank(plain, points[flank])
     return condensed_gear(
         plain, replace(fine, points=points), own.materials[0], own.contact_teeth, CARRIES_PRESSURE, True
-    )  # fmt: skip
+    )
 
 
 def by_place(body: GearBody) -> Ints:

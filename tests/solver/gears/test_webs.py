@@ -40,7 +40,7 @@ def wheel(bore: float, thickness: float, helix: float, shape: str) -> GearBody:
     gear = GearParameters.from_rack(
         z=TEETH, normal_module=3.0, normal_pressure_angle_deg=20.0, helix_angle_deg=helix, face_width=FACE,
         bore_diameter=bore, web=Web(thickness, 6.0),
-    )  # fmt: skip
+    )
     return condensed_gear(gear, sector_mesh(gear, FEW_CELLS, shape), STEEL, range(TEETH), Member.PINION, False)
 
 
@@ -86,7 +86,7 @@ def test_gears_are_softer_the_less_there_is_of_them() -> None:
         "plain": [], "full": [*WEB, "wheel.web_thickness_mm=8", "wheel.web_offset_mm=0"], "web": [*WEB],
         "thin": [*WEB, "wheel.web_thickness_mm=1"],
         "no hub": ["wheel.rim_thickness_mm=4", "wheel.web_thickness_mm=3", "wheel.web_offset_mm=0.5"],
-    }  # fmt: skip
+    }
     soft = {name: softness(model_of(helical_scene(*keys)).bodies[Member.WHEEL]) for name, keys in scenes.items()}
     assert soft["full"] == soft["plain"]
     assert soft["plain"] < soft["web"] < soft["thin"]
@@ -150,6 +150,6 @@ def test_transmission_error_is_that_of_one_rank(run_script: Run, ranks: int) -> 
         np.array([each.transmission_error for each in solve_pitches(condense(gear_problem(helical_scene(*keys)),
                                                                              MPI.COMM_SELF), frictions, 2)])
         for keys in (WEB, ())
-    )  # fmt: skip
+    )
     np.testing.assert_allclose(json.loads(done.stdout), webbed, rtol=1e-9)
     assert (np.abs(webbed) > np.abs(plain)).all()

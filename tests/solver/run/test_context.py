@@ -50,7 +50,7 @@ def test_earlier_cost_is_that_of_the_resumed_run(resume: bool, tmp_path: Path) -
         now = run.cost(Timings(positions=1.0, total=1.0), 50.0)
     assert run.earlier == (SPENT if resume else Cost())
     assert now == (Cost(Timings(mesh=1.0, positions=3.0, total=4.0), 100.0) if resume
-                   else Cost(Timings(positions=1.0, total=1.0), 50.0))  # fmt: skip
+                   else Cost(Timings(positions=1.0, total=1.0), 50.0))
 
 
 def test_context_is_frozen_and_names_its_archive(tmp_path: Path) -> None:

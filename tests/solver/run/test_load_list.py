@@ -21,7 +21,7 @@ from tests.support.gear_cases import spur_scene
 SHORT = (
     "mesh.level=quick", "sweep.positions=3", "contact.friction=[0.0]", "output.pictures=false", "output.fields=false",
     "output.animation=false", "output.error_bars=true",
-)  # fmt: skip
+)
 
 
 def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,7 +21,7 @@ OUTPUT = tuple(f"output.{name}=false" for name in ("pictures", "animation", "fie
 SETTINGS = (
     *OUTPUT, "sweep.positions=8", "dynamics.torque_percents=[25,100,200]", "wear.cycles=4e5",
     "wear.report_at_cycles=1e5", "wear.first_block_cycles=4e4", "wear.refresh_um=0.3",
-)  # fmt: skip
+)
 
 LAST_DIGIT = 2e-8
 """Of the nine that tables have: a rounding of it, and one more of a number that is just above a power of ten."""
@@ -107,6 +107,6 @@ def test_a_mesh_that_is_a_stiffness_has_no_heaviest_torque(run_script: Run, tmp_
     """Worn with the tangent stiffness times the deflection: kept and read again, NaN in the table, null in the file."""
     out = tmp_path / "out"
     computed(run_script, out, "--set", "dynamics.mesh=tangent", "--set", "wear.cycles=2e4", "--set",
-             "wear.report_at_cycles=[]", "--set", "wear.first_block_cycles=2e4")  # fmt: skip
+             "wear.report_at_cycles=[]", "--set", "wear.first_block_cycles=2e4")
     assert np.isnan(columns(out / "vibration.csv")["heaviest_torque_share"]).all()
     assert json.loads((out / "operation.json").read_text(encoding="utf-8"))["heaviest_torque_share"] is None

@@ -185,7 +185,7 @@ def test_last_line_names_existing_requested_files(tmp_path: Path) -> None:
     """Of a run without pictures and fields neither is named; those of an earlier part of it are not, where the scene
     asks for none now."""
     asked, unasked = (spur_scene(f"output.pictures={on}", "output.animation=false", f"output.fields={on}")
-                      for on in ("true", "false"))  # fmt: skip
+                      for on in ("true", "false"))
     (tmp_path / "summary.json").write_text(json.dumps({"frictions": [{"estimated_error": {"loss_percent": 0.1}}]}))
     (tmp_path / "teeth.csv").write_text("")
     wanted = f"done: figures with error bars in {tmp_path}/summary.json; tables in {tmp_path}/teeth.csv"

@@ -22,7 +22,7 @@ from tests.support.running.processes import Run
 SETTINGS = (
     "sweep.positions=3", "output.pictures=false", "output.animation=false", "output.error_bars=false",
     "output.fields=true",
-)  # fmt: skip
+)
 
 
 def run(out: Path, *more: str, scene: str | Path = "demos/he2022.toml") -> int:
@@ -51,7 +51,7 @@ def out(finished: Path, tmp_path: Path) -> Path:
 
 
 THEIRS = ("photo.png", "pictures/photo.png", "pictures/02_mine.png", "results/measured.npz", "fields/contact.csv",
-          "worn_1000/pictures/photo.png", "notes/a.txt")  # fmt: skip
+          "worn_1000/pictures/photo.png", "notes/a.txt")
 
 
 def theirs(out: Path) -> dict[str, str]:
@@ -264,7 +264,7 @@ def test_mesh_does_not_replace_an_existing_file(
     make: dict[str, Callable[[], object]] = {
         "file": lambda: path.write_text("mine", encoding="utf-8"), "folder": path.mkdir,
         "link": lambda: path.symlink_to(tmp_path / "nowhere"),
-    }  # fmt: skip
+    }
     make[kind]()
     command = ["mesh", "demos/he2022.toml", "--level", "quick", "--out", str(path)]
     assert main(command) == 2

@@ -15,10 +15,10 @@ from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
 SPUR = "demos/he2022.toml"
 QUIET = (
     "--quiet", "--set", "output.pictures=false", "--set", "output.animation=false", "--set", "output.fields=false",
-)  # fmt: skip
+)
 SHORT = (
     "--level", "quick", "--set", "contact.friction=[0.1, 0.2, 0.3]", "--set", "sweep.positions=4",
-)  # fmt: skip
+)
 
 
 def positions(out: Path) -> list[dict[str, object]]:

@@ -31,7 +31,7 @@ from tests.support.running.processes import BROKEN_RUN, Run
 SMALL = (
     "mesh.order=2", "mesh.elements_per_contact_width=0.8", "pinion.face_width_mm=4", "wheel.face_width_mm=4",
     "contact.friction=[0.1]", "pinion.tip_relief_um=8",
-)  # fmt: skip
+)
 EVERYTHING = ("output.deformation=true",)
 BARE = ("output.pictures=false", "output.animation=false", "output.fields=false", "output.error_bars=false")
 

@@ -24,12 +24,12 @@ SPUR = "demos/he2022.toml"
 QUIET = (
     "--quiet", "--set", "output.pictures=false", "--set", "output.animation=false", "--set", "output.fields=false",
     "--set", "output.error_bars=false",
-)  # fmt: skip
+)
 SHORT = ("--level", "quick", "--set", "sweep.positions=5")
 WEAR = (
     "--set", "wear.cycles=4e5", "--set", "wear.pinion_mm2_per_N=1e-10", "--set", "wear.wheel_mm2_per_N=3e-10",
     "--set", "wear.report_at_cycles=1e5", "--set", "wear.first_block_cycles=2e4",
-)  # fmt: skip
+)
 
 
 def computed(run_script: Run, out: Path, *settings: str, how: str = "ok", ranks: int = 1, scene: str = SPUR) -> int:
@@ -128,7 +128,7 @@ def test_worn_pair_is_solved_from_its_own_scene(worn_pair: Path, run_script: Run
     computed(run_script, tmp_path / "again", scene=str(worn / "scene.toml"))
     computed(run_script, tmp_path / "finer", "--level", "standard", scene=str(worn / "scene.toml"))
     found = {name: errors(folder) for name, folder in (
-        ("worn", worn), ("again", tmp_path / "again"), ("finer", tmp_path / "finer"), ("new", worn_pair))}  # fmt: skip
+        ("worn", worn), ("again", tmp_path / "again"), ("finer", tmp_path / "finer"), ("new", worn_pair))}
     wear = 1e3 * max(depth.max() for depth in depths(worn_pair, "400000"))
     assert np.abs(found["again"] - found["worn"]).max() < 3e-4 * wear
     assert np.abs(found["finer"] - found["worn"]).max() < 2e-2 * wear
@@ -163,7 +163,7 @@ def test_helical_pair_wears_in_the_ratio_of_coefficients(blocks_: str, run_scrip
     settings = (
         *WEAR, "--set", "contact.friction=0.1", "--set", "sweep.positions=4", "--set", f"wear.blocks={blocks_}",
         "--set", "wear.cycles=1.2e5",
-    )  # fmt: skip
+    )
     out = tmp_path / "out"
     drawn = blocks_ == "implicit"
     computed(run_script, out, *settings, "--set", f"output.pictures={str(drawn).lower()}", scene=str(scene))

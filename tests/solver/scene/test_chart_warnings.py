@@ -18,7 +18,7 @@ SAID = "pinion.flank_csv, lead.csv: heights z = -8 to 8 mm cover 80 % of the fac
 SETTINGS = (
     "mesh.order=1", "sweep.positions=3", "transient.speeds_rpm=[1000]", "dynamics.backlash_um=50",
     "dynamics.speed_rpm=[1000,1100]", "dynamics.speeds=2", "dynamics.torque_percents=[50,100,150]", *QUIET,
-)  # fmt: skip
+)
 PERCENT = {"loads": "100", "excitation": "50,100"}
 
 

@@ -52,7 +52,7 @@ def test_at_least_45_malformed_scenes() -> None:
         ("fatigue.exponent", "fatigue.exponents"), ("dynamics.speeds_rpm", "dynamics.speed_rpm"),
         ("load.speed_rpm", "dynamics.speed_rpm"),
     ],
-)  # fmt: skip
+)
 def test_unknown_key_suggests_the_key_that_was_meant(written: str, meant: str) -> None:
     """Found by its spelling, by its symbol, or by what it means; nearly the same spelling in the section goes
     before the same spelling in another one."""

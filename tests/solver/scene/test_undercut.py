@@ -14,7 +14,7 @@ from tests.support.scene_texts import HE, without
 FEW = [
     "pinion.teeth=15", "wheel.teeth=40", "pinion.tip_diameter_mm=50.4", "pinion.bore_diameter_mm=20",
     "wheel.tip_diameter_mm=123.6", "wheel.bore_diameter_mm=50",
-]  # fmt: skip
+]
 
 
 def test_mild_undercut_is_a_warning() -> None:

@@ -31,7 +31,7 @@ def he(*settings: str) -> Scene:
         ("dynamics.pinion_inertia_kg_m2={}", "1e-12"), ("dynamics.wheel_inertia_kg_m2={}", "1e9"),
         ("dynamics.series_stiffness_N_per_um={}", "0.001"),
     ],
-)  # fmt: skip
+)
 def test_senseless_values_are_refused_and_their_limit_is_taken(setting: str, word: str) -> None:
     """He's pair: each is refused when the scene is read, by its key and with a limit; the limit itself is taken. Once
     they passed without a word, or the call stood for minutes."""

@@ -32,7 +32,7 @@ def fillets(factor: int) -> Mesher:
             root, fillet_elements=factor * root.fillet_elements, back_elements=factor * root.back_elements,
             neck_elements=factor * root.neck_elements,
         ),
-    )  # fmt: skip
+    )
 
 
 @cache

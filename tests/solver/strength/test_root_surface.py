@@ -17,7 +17,7 @@ def gear(helix_angle: float = 0.0) -> GearParameters:
     return GearParameters.from_rack(
         z=33, normal_module=2.3, normal_pressure_angle_deg=18.0, profile_shift=0.3, rack_tip_radius_coefficient=0.2,
         face_width=10.0, bore_diameter=30.0, helix_angle_deg=helix_angle,
-    )  # fmt: skip
+    )
 
 
 def test_profile_is_at_30_degrees_at_the_critical_section() -> None:
@@ -56,7 +56,7 @@ def test_fillet_is_deep_enough_for_bending(teeth: int) -> None:
     own = GearParameters.from_rack(
         z=teeth, normal_module=2.0, normal_pressure_angle_deg=20.0, rack_tip_radius_coefficient=0.3, face_width=10.0,
         bore_diameter=10.0,
-    )  # fmt: skip
+    )
     fine = SectorResolution(profile_elements=12, face_elements=2, fillet_elements=40, back_elements=40)
     root = tension_side(sector_mesh(own, fine, "quadrilateral"), own)
     angles, counted = np.degrees(root.tangent_angles), root.is_fillet

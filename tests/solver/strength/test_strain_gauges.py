@@ -28,7 +28,7 @@ def root(shape: str, loaded: bool = True, helix_angle: float = 0.0) -> RootSurfa
     gear = GearParameters.from_rack(
         z=33, normal_module=2.3, normal_pressure_angle_deg=18.0, profile_shift=0.3, rack_tip_radius_coefficient=0.2,
         face_width=10.0, bore_diameter=30.0, helix_angle_deg=helix_angle,
-    )  # fmt: skip
+    )
     fine = SectorResolution(profile_elements=12, face_elements=6, fillet_elements=24, back_elements=24)
     mesh = with_back_root(sector_mesh(gear, fine, shape))
     return (tension_side if loaded else compression_side)(mesh, gear)
@@ -90,7 +90,7 @@ def test_a_long_gauge_finds_less_than_the_peak() -> None:
         replace(GAUGE, angle=0.0), replace(GAUGE, angle=np.radians(88.0), length=2.0), replace(GAUGE, length=50.0),
         replace(GAUGE, height=5.1),
     ],
-)  # fmt: skip
+)
 def test_gauges_off_the_root_are_refused(wrong: Gauge) -> None:
     """Above the fillet, beyond the middle of the space, longer than the root, beside the face."""
     said = (

@@ -35,7 +35,7 @@ class Softening:
 
     def implicit_block(
         self, depth: Floats, start: CycleEvaluation, length: float
-    ) -> tuple[Floats, CycleEvaluation]:  # fmt: skip
+    ) -> tuple[Floats, CycleEvaluation]:
         """The rate r at the end, r (1 + h + ΔN r) = 1."""
         self.calls += 1
         b = 1.0 + depth * (1.0, 2.0)
@@ -56,7 +56,7 @@ class Failing(Softening):
 
     def implicit_block(
         self, depth: Floats, start: CycleEvaluation, length: float
-    ) -> tuple[Floats, CycleEvaluation]:  # fmt: skip
+    ) -> tuple[Floats, CycleEvaluation]:
         if length > self.longest:
             raise NotConverged("too long")
         return super().implicit_block(depth, start, length)

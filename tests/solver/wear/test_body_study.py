@@ -33,7 +33,7 @@ from tests.support.wear_cases import (
     cylinder,
     sphere,
     to_and_fro,
-)  # fmt: skip
+)
 
 MILLIMETRE = Cycle(travel=(Travel(1, translation=(1.0, 0.0, 0.0)),))
 

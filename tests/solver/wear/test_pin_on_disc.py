@@ -71,7 +71,7 @@ BAD = {
     "metres as millimetres": (
         "sliding_distance_mm,depth_mm\n" + "".join(f"{s},{s / 4.0}\n" for s in range(6)), "are its units",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", BAD)

@@ -112,7 +112,7 @@ GEARS = (
         ),
         Refused("chart of one diameter", lambda _: FlankChart([145.0], [0.0], [[0.0]]), ("two diameters",)),
     ]
-)  # fmt: skip
+)
 
 PROBLEMS = [
     Refused(f"{key} = {value!r:.40}", lambda _, key=key, value=value: problem(**{key: value}), words)

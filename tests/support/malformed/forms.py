@@ -93,5 +93,5 @@ WRONG_FORMS: dict[str, tuple[str, list[str], str, str, str]] = {
     "fillet under the mate's tip": (
         YANG, ["pinion.protuberance_um=150"], "wheel.tip_diameter_mm", "149.3", "lower the tip",
     ),
-}  # fmt: skip
+}
 """Case -> scene, overrides; key, what was found and a part of the remedy that the message must have."""

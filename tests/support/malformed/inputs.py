@@ -266,4 +266,4 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "record: running in empty": (
         ["wear-coefficient", "{record}", *TEST, "--run-in-m="], "--run-in-m", '"", no number', "sliding distance that",
     ),
-}  # fmt: skip
+}

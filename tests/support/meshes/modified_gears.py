@@ -17,4 +17,4 @@ def fully_modified(gear: GearParameters, parabolic: bool = False) -> GearParamet
         end_relief_um=7.0, end_relief_length=0.15 * gear.face_width, end_relief_parabolic=parabolic,
         root_relief_um=8.0, root_relief_end_diameter=control + 1.5, root_relief_parabolic=parabolic,
         twist_um=-9.0, profile_control_diameter=control,
-    ))  # fmt: skip
+    ))

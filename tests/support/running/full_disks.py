@@ -71,7 +71,7 @@ def disk(folder: Path, kilobytes: int, settings: list[str]) -> dict[str, object]
         found = {
             "kB": kilobytes, "status": status, "stderr": errors, "broken": broken(out),
             "complete": (out / "summary.json").exists(), "kept": digests(folder) == before,
-        }  # fmt: skip
+        }
         mounted(folder, 100_000)
         again, errors = run(out, "--resume", *settings)
         still = digests(folder) == before

@@ -39,13 +39,13 @@ def listening(pid: int) -> Found:
         name = Path(f"/proc/{pid}/comm").read_text().strip()
         files = {os.readlink(each) for each in Path(f"/proc/{pid}/fd").iterdir() if each.is_symlink()}
         rows = [line.split() for kind in ("tcp", "tcp6")
-                for line in Path(f"/proc/{pid}/net/{kind}").read_text().splitlines()[1:]]  # fmt: skip
+                for line in Path(f"/proc/{pid}/net/{kind}").read_text().splitlines()[1:]]
     except OSError:
         return set()
     return {
         (name, row[1]) for row in rows
         if row[3] == LISTEN and row[1].split(":")[0] not in LOOPBACK and f"socket:[{row[9]}]" in files
-    }  # fmt: skip
+    }
 
 
 def started_mpi(pid: int) -> int:

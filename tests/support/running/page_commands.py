@@ -18,7 +18,7 @@ CHEAP = (
     "sweep.positions=4", "contact.friction=[0.1]", "mesh.order=1", "mesh.elements_per_contact_width=0.5",
     "pinion.face_width_mm=2", "wheel.face_width_mm=2", "load.torque_Nm=20", "output.error_bars=false",
     "output.pictures=false", "output.animation=false",
-)  # fmt: skip
+)
 """Settings that stand behind those of a line: what it computes takes seconds then."""
 FEW = ("sweep.positions=6",)
 FEWER = {

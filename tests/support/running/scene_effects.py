@@ -60,13 +60,13 @@ OF_GEARS = {
     "profile_crowning_um": "5.0", "profile_slope_um": "-6.0", "profile_control_diameter_mm": None,
     "lead_crowning_um": "5.0", "helix_slope_um": "7.0", "end_relief_um": "8.0", "end_relief_length_mm": "3.0",
     "end_relief_form": '"parabolic"', "twist_um": "6.0", "flank_csv": None,
-}  # fmt: skip
+}
 OF_EACH = {
     "teeth": ("19", "39"),
     "tip_diameter_mm": ("65.5", "125.5"), "root_diameter_mm": ("52.0", "112.0"), "hub_diameter_mm": ("30.0", "70.0"),
     "tip_relief_start_diameter_mm": ("64.0", "124.0"), "root_relief_end_diameter_mm": ("58.5", "118.5"),
     "profile_control_diameter_mm": ("57.5", "117.5"), "flank_csv": ('"pinion.csv"', '"wheel.csv"'),
-}  # fmt: skip
+}
 """Of pinion and wheel, where they cannot have the same."""
 OTHERS = {
     "title": '"another"', "pair.normal_module_mm": "2.95", "pair.normal_pressure_angle_deg": "22.0",
@@ -97,7 +97,7 @@ OTHERS = {
     "fatigue.exponents": "[9.0]", "output.pictures": "false", "output.animation": "false", "output.fields": "false",
     "output.deformation": "true", "output.error_bars": "false", "output.compare": '"yang2022"',
     "skip.off": '["plane"]',
-}  # fmt: skip
+}
 CHARTS = {"pinion.csv": "diameter_mm,depth_um\n50,3\n70,5\n", "wheel.csv": "diameter_mm,depth_um\n110,3\n130,5\n"}
 """Name -> text of a chart of either gear."""
 
@@ -146,7 +146,7 @@ def _vibration(scene: Scene) -> object:
     return (
         settings, sweep_list(5000.0, section).tolist(), section.histories_rpm, section.map_percents, over_torque,
         sorted(section.torque_percents), factors, operating_point(scene), section.bodies,
-    )  # fmt: skip
+    )
 
 
 def _roots(scene: Scene) -> object:
@@ -168,7 +168,7 @@ def _fatigue(scene: Scene) -> object:
     found = flank_fatigue(loads, 0.3, section.depths[:8:3], FatigueMaterial(
         material.poissons_ratio, material.lame[1], section.yield_stress_MPa, section.tension_factor,
         section.compression_factor, section.normal_factor,
-    ))  # fmt: skip
+    ))
     return section.depths, section.exponents, {each.name: value.tolist() for each, value in found.values.items()}
 
 

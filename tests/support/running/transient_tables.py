@@ -32,4 +32,4 @@ def transient_tables(speeds: tuple[float, ...] = (1500.0,), frictions: tuple[flo
                     rows.append(TransientRow(
                         speed, friction, angle, 1e-5 * k, 0.01 * force, 1.0, 10.0, 0.0, force, 800.0, 100.0, 100.0,
                         0.1 * force, 80.0, 100.0))
-    return KeptTables("a pair", rows, teeth, facts)  # fmt: skip
+    return KeptTables("a pair", rows, teeth, facts)

@@ -16,7 +16,7 @@ from tests.support.gear_cases import helical_scene
 
 WEB = (
     "wheel.rim_thickness_mm=4", "wheel.web_thickness_mm=3", "wheel.web_offset_mm=0.5", "wheel.hub_diameter_mm=52",
-)  # fmt: skip
+)
 """Of `helical_scene`, whose wheel has a face of 8 mm, a root circle of 69.1 mm and a bore of 44 mm."""
 
 

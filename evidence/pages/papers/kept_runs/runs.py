@@ -34,7 +34,7 @@ class Runs:
         else:
             self.out.mkdir(parents=True, exist_ok=True)
             took = run(Command((*map(str, words), "--out", str(folder)), ROOT, self.out / f"{name}.log",
-                               time_limit=TIME_LIMIT))  # fmt: skip
+                               time_limit=TIME_LIMIT))
             self._words(name).write_text(self._told(words), encoding="utf-8")
             cost.write_text(f"{took.wall},{took.cpu},{took.memory_MB}", encoding="utf-8")
         return folder, Cost(*map(float, cost.read_text(encoding="utf-8").split(",")))

@@ -130,7 +130,7 @@ def sliding(system: CondensedSystem, friction: Floats | float, heading: Floats, 
 def frictional(
     system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium,
     near: InitialGuess | None = None,
-) -> Equilibrium:  # fmt: skip
+) -> Equilibrium:
     """Equilibrium with Coulomb friction.
 
     friction: coefficient μ, a number or (q,).

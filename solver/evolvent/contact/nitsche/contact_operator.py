@@ -270,4 +270,4 @@ def stacked(operators: list[ContactOperator]) -> ContactOperator:
         diagonal("jump1"), MortarProjection.stacked([op.jump2 for op in operators]), diagonal("mass"),
         diagonal("shape"), diagonal("hat"),
         rows("points"), rows("weights"), rows("gap"), rows("stabiliser"),
-    )  # fmt: skip
+    )

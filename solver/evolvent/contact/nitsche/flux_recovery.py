@@ -64,7 +64,7 @@ class NitscheTraction:
         F, d = self._local_flux(), self.frames.shape[1]
         is_normal = np.arange(d) == 0
         normal, tangential = (sp.kron(_weighted_mass(self.surface, γ), np.diag(which.astype(float)), format="csr")
-                              for γ, which in zip(self.stabiliser.T, (is_normal, ~is_normal)))  # fmt: skip
+                              for γ, which in zip(self.stabiliser.T, (is_normal, ~is_normal)))
         return (F.T.tocsr() @ ((normal + tangential) @ F)).tocsr()
 
 

@@ -42,7 +42,7 @@ VTK_CELLS = {
     ("quadrilateral", 1): 9, ("quadrilateral", 2): 28,
     ("tetrahedron", 1): 10, ("tetrahedron", 2): 24,
     ("hexahedron", 1): 12, ("hexahedron", 2): 29,
-}  # fmt: skip
+}
 """(shape, order) -> VTK's number of the Lagrange cell."""
 
 Arrays = dict[str, Floats]

@@ -96,7 +96,7 @@ def _ends(paired: PairedSurfaces, facets: Ints) -> Floats:
 def _rim(surface: Surface) -> Ints:
     """Corner nodes (s, 1 or 2) of the facet sides on the rim of a surface; of all sides where it is closed."""
     corners = {"interval": [[0], [1]], "triangle": [[0, 1], [1, 2], [2, 0]],
-               "quadrilateral": [[0, 1], [1, 3], [3, 2], [2, 0]]}[surface.shape]  # fmt: skip
+               "quadrilateral": [[0, 1], [1, 3], [3, 2], [2, 0]]}[surface.shape]
     sides = np.sort(surface.facets[:, corners].reshape(-1, len(corners[0])), axis=1)
     unique, count = np.unique(sides, axis=0, return_counts=True)
     return unique[count == 1] if (count == 1).any() else unique

@@ -97,7 +97,7 @@ def _without_slope(change: Floats, points: Floats, share: Floats) -> float:
 
 
 def _brought_together(paired: PairedSurfaces, positions: SurfacePositions, pressed: Ints,
-                      share: Floats) -> SurfacePositions:  # fmt: skip
+                      share: Floats) -> SurfacePositions:
     """Both surfaces, moved along with their contact as rigid bodies, and apart until no pressed point overlaps; share:
     fraction of the force at each pressed point, (p,)."""
     pairing = paired.pairing
@@ -129,7 +129,7 @@ def _facets(paired: PairedSurfaces) -> tuple[Ints, Ints]:
 
 
 def _moved_rigidly(surface: Surface, supports: SurfaceSupports, positions: Floats, facets: Ints, xi: Floats,
-                   share: Floats) -> Floats:  # fmt: skip
+                   share: Floats) -> Floats:
     """The nodes (n, d) of a surface after the rigid motion that fits the displacements at the points (p,) best, among
     those that the supports at these points allow."""
     points = surface.positions(facets, xi[:, None])[:, 0]

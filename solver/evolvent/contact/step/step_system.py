@@ -67,7 +67,7 @@ class StepSystem:
     def __init__(
         self, problem: Problem, condensed: tuple[CondensedBody, ...], step: Step, search_at: SearchPositions = None,
         as_placed: bool = False, responses: Sequence[BodyResponse] | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.problem, self.condensed, self.step = problem, condensed, step
         self.d = condensed[0].assembled.d
         check_step(problem, step)
@@ -173,7 +173,7 @@ class StepSystem:
         return CondensedSystem(
             operator, self.compliance, motion, jump, load, block_diag(*resistance), np.where(lever > 0.0, lever, 1.0),
             self.least_scale,
-        )  # fmt: skip
+        )
 
     def solve(
         self, previous: DeformedSurfaces | None, operators: Sequence[ContactOperator] | None = None

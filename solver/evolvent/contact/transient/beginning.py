@@ -41,7 +41,7 @@ class Reached:
 def begun(
     problem: Problem, bodies: tuple[MovingBody, ...], scheme: TimeScheme, start: InitialState, first: Step,
     length: float,
-) -> Reached:  # fmt: skip
+) -> Reached:
     """The state at time 0. first: the loads, unless the start is a static equilibrium; length: of the first step [s].
 
     Raises NotConverged, SearchError.
@@ -96,7 +96,7 @@ def check(problem: Problem, settings: TransientSettings, start: InitialState) ->
         refuse(
             "transient, conserving", "contacts without friction", Words(f"friction = {friction[0]:g}"),
             "leave out conserving: friction takes energy",
-        )  # fmt: skip
+        )
     if problem.nitsche.theta != 1.0:
         found = f"theta = {problem.nitsche.theta:g}"
         refuse("transient", "the symmetric variant, theta = 1", found, "leave out theta: other variants have no energy")
@@ -104,7 +104,7 @@ def check(problem: Problem, settings: TransientSettings, start: InitialState) ->
         refuse(
             "transient", "supports at rest", "a Fixed with a displacement",
             "move the face by Rigid with Freedom(direction, displacement=...)",
-        )  # fmt: skip
+        )
     for index, v in start.velocities.items():
         if not 0 <= index < len(problem.bodies):
             wanted = f"body indices below {len(problem.bodies)}"
@@ -128,4 +128,4 @@ def _check_free(body: Body, index: int, velocity: tuple[float, ...]) -> None:
             f"one along its free rigid motions, {along}" if along else "none, as the body is held",
             velocity,
             "give its Rigid a Freedom with a load, which may be 0, or leave out the support that stops it",
-        )  # fmt: skip
+        )

@@ -237,7 +237,7 @@ def _halfway(index: int, before: BodyMotion, after: MovingResponse) -> MovingRes
         refuse(
             f"transient, step: prescribed motions of body {index}", "ones at rest, as conserving = True",
             rest.tolist(), "leave out conserving, or move the body by a load",
-        )  # fmt: skip
+        )
     factor = 0.5 * (before.response.factor + after.factor)
     return replace(after, factor=factor, resultant=0.5 * (before.response.resultant + after.resultant))
 
@@ -266,7 +266,7 @@ def _unresisted(system: StepSystem, bodies: Sequence[MovingBody], moved: Sequenc
     free = [body.count + body.free for body in bodies]
     jumps = np.hstack([
         (E @ body.condensed.motion_shapes[:, body.free])[:: system.d] for E, body in zip(system.maps, bodies)
-    ])  # fmt: skip
+    ])
     lever = np.abs(jumps).max(axis=0, initial=0.0)
     lever[lever == 0.0] = 1.0
     modes = null_space(jumps / lever, rcond=UNRESISTED) / lever[:, None] if jumps.size else np.eye(jumps.shape[1])

@@ -50,7 +50,7 @@ def write_state(
         "format": FORMAT, "names": list(parts), "digests": list(parts.values()),
         "times": [reached.time, reached.length, reached.next_length],
         "balance": [balance.first, balance.largest, balance.work, balance.added],
-    }  # fmt: skip
+    }
     for i, (body, motion) in enumerate(zip(bodies, reached.motions)):
         arrays |= {f"body{i}_{name}": value for name, value in _motion_arrays(body, motion).items()}
     for i, surfaces in enumerate(reached.deformed.positions if reached.deformed else ()):
@@ -79,7 +79,7 @@ def _motion_arrays(body: MovingBody, motion: BodyMotion) -> dict[str, Any]:
         "state": [state.position, state.velocity, state.acceleration], "lag": motion.lag, "forces": motion.forces,
         "factor": response.factor, "resultant": response.resultant, "prescribed": response.prescribed,
         "modes": _projections(body),
-    }  # fmt: skip
+    }
 
 
 def _motion(path: Path, arrays: Mapping[str, Any], index: int, body: MovingBody, scheme: TimeScheme) -> BodyMotion:
@@ -89,7 +89,7 @@ def _motion(path: Path, arrays: Mapping[str, Any], index: int, body: MovingBody,
         refuse(
             f"{path}", f"amplitudes of the modes of body {index} as they are computed here", Words("those of others"),
             "go on where the state was saved, with the same versions of SciPy and PETSc, or begin anew",
-        )  # fmt: skip
+        )
     factor, resultant, prescribed = float(kept["factor"]), kept["resultant"], kept["prescribed"]
     response = MovingResponse(body, TimeStep.unused(body.system, scheme), factor, resultant, prescribed)
     return BodyMotion(MotionState(*kept["state"]), kept["lag"], response, kept["forces"])
@@ -126,9 +126,9 @@ def _require_same(path: Path, arrays: Mapping[str, Any], parts: Mapping[str, str
     """Raises InputError for a state of another problem, or with other settings, and names what differs."""
     kept = dict(zip(arrays["names"].tolist(), arrays["digests"].tolist()))
     other = [name for name in [*parts, *(name for name in kept if name not in parts)]
-             if kept.get(name) != parts.get(name)]  # fmt: skip
+             if kept.get(name) != parts.get(name)]
     if other:
         refuse(
             f"{path}", "the state of this problem with these settings", Words(f"another {', '.join(other)}"),
             "take the problem and the settings that it was saved with, or another file",
-        )  # fmt: skip
+        )

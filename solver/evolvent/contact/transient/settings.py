@@ -52,11 +52,11 @@ class TransientSettings:
         number(
             "transient, damping_ratio", self.damping_ratio, "a number from 0 to 1", "0.01 is one per cent",
             lambda ζ: 0.0 <= ζ <= 1.0,
-        )  # fmt: skip
+        )
         number(
             "transient, spectral_radius", self.spectral_radius, "a number from 0 to 1", f"{DAMPED:g} is the default",
             lambda ρ: 0.0 <= ρ <= 1.0,
-        )  # fmt: skip
+        )
         self._check_adaptive()
         self._check_conserving()
 
@@ -76,7 +76,7 @@ class TransientSettings:
         number(
             "transient, shortest_step", self.shortest_step, f"a number above 0 and up to time_step, {self.time_step:g}",
             f"leave it out for {SHORTEST:g} of time_step", lambda h: 0.0 < h <= self.time_step,
-        )  # fmt: skip
+        )
 
     def _check_conserving(self) -> None:
         instance("transient, conserving", self.conserving, bool, "write conserving=True, or leave it out")

@@ -158,7 +158,7 @@ class Transient:
         return Moment(
             self.time, solved.solution, velocities, solved.energy, self._reached.balance.work, length, solved.error,
             solved.systems,
-        )  # fmt: skip
+        )
 
     def _accepted(self, before: Reached, loading: Loading, length: float) -> SolvedStep:
         """The first step that is accepted, from this length on downwards."""

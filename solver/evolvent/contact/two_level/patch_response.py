@@ -48,7 +48,7 @@ class PatchResponse:
 def patch_response(
     body: CoarseBody, patch: Patch, is_held: tuple[str, ...] = (), flux_safety: float | None = None,
     places: Places | None = None, flux_reach: float = np.inf,
-) -> PatchResponse:  # fmt: skip
+) -> PatchResponse:
     """Condenses a patch with fine and with coarse cells.
 
     is_held: facet groups of the body that are fixed.

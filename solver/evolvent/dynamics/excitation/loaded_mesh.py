@@ -45,7 +45,7 @@ def loaded_mesh(
     model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm = MPI.COMM_WORLD,
     known: Figures = MappingProxyType({}),
     keep: Callable[[Figures], None] = lambda _: None,
-) -> LoadedMesh:  # fmt: skip
+) -> LoadedMesh:
     """Solves all positions under all torques; the ranks divide the positions, and each solves one at a time.
 
     model: of the gears under any torque.
@@ -122,7 +122,7 @@ def equilibrium(model: GearModel, position: SharedPosition) -> Stand:
 def _searched(
     models: Sequence[GearModel], angles: Floats,
     kept: Sequence[Sequence[SharedPosition | None]] | None = None,
-) -> Iterator[tuple[SharedPosition, ...]]:  # fmt: skip
+) -> Iterator[tuple[SharedPosition, ...]]:
     """Positions one after the other, each under all torques (m,). kept: those that may do with the present wear."""
     ahead: tuple[SharedPosition, ...] = ()
     for i, angle in enumerate(angles):

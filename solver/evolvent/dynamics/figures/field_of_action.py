@@ -96,7 +96,7 @@ class FieldOfAction:
         lines.set_capstyle("butt")
         axes.add_collection(lines)
         axes.set(xlim=(start, end), ylim=(-half, half), xlabel="path of contact from the pitch point [mm]",
-                 ylabel="face [mm]")  # fmt: skip
+                 ylabel="face [mm]")
 
     def _force(self, axes: Axes, k: int) -> None:
         """Over the mesh period, with a dot at this position."""

@@ -41,7 +41,7 @@ def operation_figure(operation: Operation) -> Figure:
     phase = np.arange(count * len(e) + 1) / len(e)
     for values, colour, style, name in (
         (static, WHEEL, "--", "static"), (e, FAINT, "-", "unloaded"),
-    ):  # fmt: skip
+    ):
         error.plot(phase, 1e3 * np.append(np.tile(values, count), values[0]), style, color=colour, label=name)
     force.set_ylabel("mesh force [kN]")
     force.axhline(0.0, color=INK, lw=0.8, zorder=0)

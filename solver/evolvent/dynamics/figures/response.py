@@ -34,7 +34,7 @@ BAND = (
 def response_picture(
     drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB,
     errors: VibrationErrors,
-) -> bytes:  # fmt: skip
+) -> bytes:
     """PNG of `response_figure`."""
     with styled():
         return png(response_figure(drive, swept, found, branch, iso, errors))
@@ -43,7 +43,7 @@ def response_picture(
 def response_figure(
     drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB,
     errors: VibrationErrors,
-) -> Figure:  # fmt: skip
+) -> Figure:
     """Equivalent amplitude, dynamic factor with that of ISO 6336-1, and separated share over the speed, up and down,
     and the unstable steady states between."""
     speeds = np.array([speed_of(drive, float(period)) for period in swept.periods])
@@ -81,7 +81,7 @@ def response_figure(
     for part in SUPERHARMONICS:
         name = "natural" if part == 1 else f"1/{part}"
         amplitude.text(drive.natural_speed / part, 0.995, f" {name}", va="top", color=INK, fontsize=8.0,
-                       transform=amplitude.get_xaxis_transform(), clip_on=True)  # fmt: skip
+                       transform=amplitude.get_xaxis_transform(), clip_on=True)
     amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
     factor.set_ylabel("largest mesh force\nover the static one")

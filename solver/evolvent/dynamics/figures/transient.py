@@ -83,7 +83,7 @@ def _legend(figure: Figure, frictions: Sequence[float], colours: Sequence[Colour
     figure.legend(
         handles=lines, loc="upper right", ncols=(len(lines) + 1) // 2, borderaxespad=0.0,
         bbox_to_anchor=(1.0 - 0.14 / width, 1.0 - 0.1 / height),
-    )  # fmt: skip
+    )
 
 
 def _errors(axes: Axes, rows: Sequence[TransientRow], colour: Colour, banded: bool) -> None:

@@ -67,7 +67,7 @@ def _draw(panels: Sequence[Axes], rows: Sequence[StartRow], colour: Colour, labe
             for row in rows
         ]),
         (UNKNOWN, [(row.max_pressure_MPa, row.max_pressure_MPa_error, row.static_max_pressure_MPa) for row in rows]),
-    )  # fmt: skip
+    )
     for axes, (begin, columns) in zip(panels, curves):
         value, bar, still = np.array([(begin, UNKNOWN, UNKNOWN), *columns]).T
         if banded:

@@ -85,7 +85,7 @@ def _draw_lines(axes: Axes, speeds: Floats, mesh: Floats, found: list[Response],
     drawn = LineCollection(
         [pieces[i] for i in rank], array=np.array(sizes)[rank], cmap=PRESSURE_MAP, linewidths=np.array(widths)[rank],
         norm=LogNorm(LOWEST * load, max([*sizes, load])), capstyle="projecting", zorder=2,
-    )  # fmt: skip
+    )
     axes.add_collection(drawn)
     return drawn
 

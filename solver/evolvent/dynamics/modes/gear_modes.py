@@ -107,7 +107,7 @@ def gear_modes(
 
 def sector_matrices(
     elastic: Body, flank: Surface, traction: NitscheTraction | None, sectors: int
-) -> tuple[SectorMatrices, sp.csr_matrix, SectorParts]:  # fmt: skip
+) -> tuple[SectorMatrices, sp.csr_matrix, SectorParts]:
     """Matrices of a sector of a gear of so many, its mass matrix with the held degrees of freedom, and its parts.
     traction: of Nitsche's method on its flank, None without."""
     pitch, d = 2.0 * np.pi / sectors, elastic.mesh.dimension
@@ -125,7 +125,7 @@ def sector_matrices(
 def _on_mesh(
     body: GearBody, sector_of: MeshData, traction: NitscheTraction | None, choice: ModeChoice,
     computed: Callable[[], None],
-) -> tuple[RingModes, float, Floats, Numbers]:  # fmt: skip
+) -> tuple[RingModes, float, Floats, Numbers]:
     """Modes, moment of inertia and `GearModes.spun` on a sector mesh, and the modes at its flank's functionals."""
     elastic, N = sector_body(sector_of, body.material, body.member), body.gear.z
     sector, M, parts = sector_matrices(elastic, surface_of(sector_of, "flank"), traction, N)

@@ -44,4 +44,4 @@ def _coarse_flank(fine: SectorResolution) -> SectorResolution:
     return replace(
         coarser(fine), core_elements=fine.core_elements, rim_elements=fine.rim_elements,
         web_elements=fine.web_elements, hub_elements=fine.hub_elements,
-    )  # fmt: skip
+    )

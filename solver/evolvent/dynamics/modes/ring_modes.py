@@ -67,7 +67,7 @@ class RingModes:
         return RingModes(
             self.sectors, self.frequencies[wanted], self.harmonic[wanted], self.imaginary[wanted],
             self.shapes[:, wanted],
-        )  # fmt: skip
+        )
 
     def earlier(self, amplitudes: Floats, pitches: int) -> Floats:
         """Amplitudes (m,) of the same motion, in which sector s moves as sector s + pitches did."""

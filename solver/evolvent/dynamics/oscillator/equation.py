@@ -109,7 +109,7 @@ def acceleration(
 def step(
     o: Oscillator, region: int, front: int, back: int, τ: float, h: float, T: float, y: Floats, stages: Floats,
     out: Floats,
-) -> None:  # fmt: skip
+) -> None:
     """One step of length h of the state y (8,) at τ, into out (8,); stages (12, 8): room for the stages."""
     for i in range(STAGES):
         for n in range(SIZE):

@@ -84,7 +84,7 @@ class SpeedSweep:
 def sweep_speeds(
     model: TorsionalModel, periods: Floats, beyond: tuple[float, float] | None = None,
     computed: Callable[[], None] = lambda: None,
-) -> SpeedSweep:  # fmt: skip
+) -> SpeedSweep:
     """Steady states at mesh periods (n,) [s], two at least, descending.
 
     beyond: longest and shortest mesh period from and to which the branch is followed, where those of the speeds lie

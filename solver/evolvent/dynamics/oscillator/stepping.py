@@ -90,7 +90,7 @@ def region_at(o: Oscillator, front: int, back: int, τ: float, T: float, y: Floa
 def length_to_border(
     o: Oscillator, region: int, border: int, front: int, back: int, τ: float, h: float, T: float, y: Floats,
     stages: Floats, out: Floats, left: Floats,
-) -> float:  # fmt: skip
+) -> float:
     """Length of the step from y whose end, in out, lies on a border of the region; h is one that goes beyond it, with
     its end in out and the distances there in left."""
     low, high, length = 0.0, h, h
@@ -121,7 +121,7 @@ def may_dip(h: float, begin: Floats, end: Floats) -> bool:
 def length_to_turn(
     o: Oscillator, region: int, border: int, front: int, back: int, τ: float, h: float, T: float, y: Floats,
     stages: Floats, begin: Floats, out: Floats, left: Floats,
-) -> float:  # fmt: skip
+) -> float:
     """Length of the step from y at whose end the distance to a border, in left, is least, a last bit late, or already
     below 0; h is one after it. By regula falsi on its slope, in the Illinois form."""
     low, high, slope_low, slope_high, ahead = 0.0, h, begin[border, 1], left[border, 1], 0
@@ -150,7 +150,7 @@ def length_to_turn(
 def step_in_region(
     o: Oscillator, region: int, front: int, back: int, τ: float, h: float, T: float, y: Floats, stages: Floats,
     begin: Floats, out: Floats, left: Floats,
-) -> tuple[float, int]:  # fmt: skip
+) -> tuple[float, int]:
     """One step of length h from y at the most, into out, that ends where the region does. Its length, and the border
     that it ends at, or NOWHERE. begin, left: room for the distances at its ends."""
     reserves(o, region, front, back, τ, T, y, begin)
@@ -191,7 +191,7 @@ def mesh_force(o: Oscillator, region: int, front: int, back: int, τ: float, T: 
 @compiled
 def record(
     o: Oscillator, region: int, front: int, back: int, τ: float, T: float, y: Floats, row: Floats
-) -> None:  # fmt: skip
+) -> None:
     """A line of the path of `advance`."""
     row[0], row[1], row[2] = y[0], y[1], np.sign(region)
     row[3] = mesh_force(o, region, front, back, τ, T, y)

@@ -52,7 +52,7 @@ class _SmoothSide:
         return _SmoothSide(
             float(side.sign), float(side.phases[cell]), side.offset[cell].tolist(), side.depths.tolist(),
             side.force[cell].tolist(),
-        )  # fmt: skip
+        )
 
     def depth(self, τ: float, s: float) -> float:
         """x [mm]."""
@@ -113,7 +113,7 @@ class _Legs:
 
     def next(
         self, region: int, passed: int, t: float, y: Floats, end: float
-    ) -> tuple[float, Floats, _Event | None]:  # fmt: skip
+    ) -> tuple[float, Floats, _Event | None]:
         """Time [s] and state (2,) at the end of the next leg, and what ends it. passed: the side at whose border, or
         turn before it, the leg begins: it is short then, and does not end there; 0 for none."""
         watched = [r for r in self.sides if region in (0, r) and r != passed]
@@ -128,12 +128,12 @@ class _Legs:
 
     def _until(
         self, events: list[_Event], region: int, t: float, y: Floats, end: float
-    ) -> tuple[float, Floats, _Event | None]:  # fmt: skip
+    ) -> tuple[float, Floats, _Event | None]:
         """To the first of the events, or the end [s]."""
         found = solve_ivp(
             _motion(self.model, region, self.sides, self.period), (t, end), y, "DOP853", events=events,
             rtol=self.relative, atol=self.absolute, max_step=0.2 / self.model.fastest,
-        )  # fmt: skip
+        )
         if found.status < 0:
             raise RuntimeError(f"time integration at {t:.6g} s: {found.message}")
         event = next((each for each, times in zip(events, found.t_events or ()) if len(times)), None)

@@ -63,7 +63,7 @@ class TorsionalModel:
         return Oscillator(
             float(self.mass), float(self.damping), bool(self.damped_apart), float(self.ground_damping),
             float(self.load), self.law.front, self.law.back,
-        )  # fmt: skip
+        )
 
     @cached_property
     def fastest(self) -> float:

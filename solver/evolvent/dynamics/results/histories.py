@@ -94,7 +94,7 @@ def history_rows(found: Iterable[Motion]) -> Iterator[HistoryRow]:
             yield HistoryRow(
                 motion.speed, motion.way, float(phase), 1e3 * float(phase) * motion.period, UM * float(s),
                 UM * float(s - e), float(velocity), float(force), int(side),
-            )  # fmt: skip
+            )
 
 
 def write_histories(folder: RunFolder, rows: Iterable[HistoryRow]) -> None:

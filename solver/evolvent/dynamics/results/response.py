@@ -201,7 +201,7 @@ def response_rows(
                 UM * each.elastic_equivalent_amplitude, *_five(UM * each.total), *_five(each.force),
                 each.largest_force, each.smallest_force, each.largest_force / drive.model.load, float(factor_error),
                 iso.factor(speed), each.apart, each.behind,
-            )  # fmt: skip
+            )
 
 
 def _five(amplitudes: Floats) -> tuple[float, float, float, float, float]:
@@ -227,7 +227,7 @@ def jumps(drive: Drive, runs: Iterable[Running]) -> tuple[float, ...]:
 def summary(
     drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: float, heaviest: float, iso: MethodB,
     errors: VibrationErrors,
-) -> DriveSummary:  # fmt: skip
+) -> DriveSummary:
     """largest: mesh force of all speeds; heaviest: of the force surface's torques [N]."""
     pinion, wheel = settings.inertias
     folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
@@ -242,7 +242,7 @@ def summary(
         jumps(drive, swept.down[::-1]), errors.jumps["down"],
         largest / heaviest if settings.mesh == "force_surface" else None, iso.single_stiffness, iso.mesh_stiffness,
         iso.resonance_speed, iso.relief_term,
-    )  # fmt: skip
+    )
 
 
 def _different(speeds: Iterable[float]) -> tuple[float, ...]:

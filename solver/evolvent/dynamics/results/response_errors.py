@@ -115,7 +115,7 @@ def _natural_speed_error(drive: Drive, mean_stiffness: float) -> float:
 def mean_stiffness_error(
     excitation: MeshExcitation, companion: CoarseExcitation, load: float, series_stiffness: float,
     quantity: str = TANGENT,
-) -> float:  # fmt: skip
+) -> float:
     """[N/mm] of `Drive.mean_stiffness` under a load [N], by mesh and spacing; NaN without a companion. That of
     harmonics.csv, where nothing gives way in series (series_stiffness: [N/mm], infinite then). quantity: the stiffness
     that it is the mean of, TANGENT or SECANT."""
@@ -169,7 +169,7 @@ def _error(
     parts = [
         np.full(len(own.found[way]), np.nan) if (seen := other.vibration) is None
         else other.factor * np.abs(values(own) - values(seen)) for other in others
-    ]  # fmt: skip
+    ]
     return np.sum(parts, axis=0) if parts else np.full(len(own.found[way]), np.nan)
 
 

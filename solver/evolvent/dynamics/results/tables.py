@@ -109,7 +109,7 @@ def _harmonics(torque: float, curve: PitchCurve) -> Iterator[HarmonicRow]:
         yield HarmonicRow(
             curve.quantity, torque, mean, curve.mean_error, size, curve.peak_to_peak_error, r, float(amplitude),
             float(error), float(np.degrees(phase)),
-        )  # fmt: skip
+        )
 
 
 def write_tables(folder: RunFolder, positions: Sequence[ExcitationRow], harmonics: Sequence[HarmonicRow]) -> None:

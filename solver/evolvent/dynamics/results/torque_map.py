@@ -51,7 +51,7 @@ def map_rows(torque: float, drive: Drive, swept: SpeedSweep) -> Iterator[MapRow]
                 torque, drive.natural_speed, speed_of(drive, float(period)), way, run.repeats,
                 UM * each.equivalent_amplitude, UM * each.elastic_equivalent_amplitude, each.largest_force,
                 each.largest_force / drive.model.load, each.apart, each.behind,
-            )  # fmt: skip
+            )
 
 
 def write_torque_map(folder: RunFolder, rows: Iterable[MapRow]) -> None:

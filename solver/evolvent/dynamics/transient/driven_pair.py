@@ -27,7 +27,7 @@ LEAST = 1
 def resolved_modes(
     problem: GearProblem, model: GearModel, density: float, sampled: float, per_harmonic: int | None,
     least: int = LEAST, computed: Callable[[], None] = lambda: None,
-) -> tuple[GearModes, GearModes]:  # fmt: skip
+) -> tuple[GearModes, GearModes]:
     """Of pinion and wheel: those that have four time steps a period, and at least so many of each harmonic.
 
     density: [kg/m³]. sampled: time steps a second, at the highest speed. per_harmonic: so many of each harmonic of the
@@ -46,7 +46,7 @@ def resolved_modes(
 def driven_pair(
     model: GearModel, modes: tuple[GearModes, GearModes], settings: DriveSettings, static: Sequence[PositionResult],
     mode_damping: float, constant_speed: bool,
-) -> MovingPair:  # fmt: skip
+) -> MovingPair:
     """The pair with inertia.
 
     static: positions of a pitch, whose mean tangent stiffness makes the damping of the mesh. mode_damping: ratio of

@@ -46,7 +46,7 @@ class NodalSums:
         return NodalSums(
             pair.modal_forces(result), (torques[0], torques[1]), np.array(resultants),
             (about_pinion[0], about_pinion[1]),
-        )  # fmt: skip
+        )
 
 
 def _points(body: GearBody, rows: Ints) -> Floats:

@@ -204,13 +204,13 @@ class PairTransient:
         state = PairState(
             motion, self._history(at, found, stand), motion.position[:-1] - pair.static(sums.modal),
             _patch(at, found), balance.end, length, self._following(solved, reached, rejected), force, solved.energy,
-        )  # fmt: skip
+        )
         impulse = 0.5 * length * (force + (force if solved.begin.mesh_force is None else solved.begin.mesh_force))
         steps = StepsTaken(1, rejected, length, solved.error, impulse, force, result.transmission_error)
         return MovingMoment(
             reached * self.time_step, result, force, float(motion.velocity[-1]) * pair.lever,
             balance.residuals(before), balance.energies(before), steps, state,
-        )  # fmt: skip
+        )
 
     def _following(self, solved: SolvedStep, reached: float, rejected: int) -> int:
         """Halvings of the step after one that counts."""

@@ -66,7 +66,7 @@ class MeshPeriods:
 def until_steady(
     transient: PairTransient, start: PairState, most: int, wanted: float, first: int = 0,
     computed: Callable[[], None] = lambda: None,
-) -> MeshPeriods:  # fmt: skip
+) -> MeshPeriods:
     """Mesh periods until the transmission error changes by at most `wanted` of its peak-to-peak value from one to the
     next, `most` at most. first: so many mesh periods are reported with all their positions. computed: called after each
     mesh period. Raises NotConverged, SearchError, Unbalanced."""

@@ -174,7 +174,7 @@ class StepBalance:
         return StepEnergies(
             passed, rotation, given, friction + self.slip_work, end.stored - before.stored, float(damping @ moved),
             self._energy.taken(before.acceleration, self.state) - before.converted,
-        )  # fmt: skip
+        )
 
     def residuals(self, before: StepEnd | None) -> Residuals:
         """Of all balances. before: as in `energies`."""

@@ -131,7 +131,7 @@ def _warn(folder: Path, reason: str, instead: str) -> None:
     logging.getLogger("evolvent").warning(
         "warning: %s: wanted a folder that only this user may write to, found %s; nothing is loaded from it, %s. Take "
         "that right away (chmod go-w), remove it, or name another one by XDG_CACHE_HOME", folder, reason, instead,
-    )  # fmt: skip
+    )
 
 
 def _writable(directory: Path) -> Path:

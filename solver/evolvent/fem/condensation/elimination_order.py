@@ -145,7 +145,7 @@ def _further_entries(graph: sp.csr_matrix, matrix: sp.csr_matrix) -> sp.csr_matr
     """The entries of a matrix that its subset `graph` has not."""
     more = (np.diff(matrix.indptr) > np.diff(graph.indptr)).astype(np.float32)
     ones = [sp.csr_matrix((np.ones(len(p.indices), dtype=np.float32), p.indices, p.indptr), p.shape)
-            for p in (matrix, graph)]  # fmt: skip
+            for p in (matrix, graph)]
     difference = sp.diags(more) @ ones[0] - sp.diags(more) @ ones[1]
     difference.eliminate_zeros()
     return difference.tocsr()

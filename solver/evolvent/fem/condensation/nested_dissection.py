@@ -69,7 +69,7 @@ class OrderedMatrix:
     def of(
         rows: sp.csr_matrix, corner: sp.coo_matrix, settings: DissectionSettings = DEFAULT_DISSECTION,
         graph: sp.spmatrix | None = None,
-    ) -> OrderedMatrix:  # fmt: skip
+    ) -> OrderedMatrix:
         """The symmetric matrix A = [A₁₁ A₁₂; A₂₁ A₂₂] in elimination order.
 
         rows: [A₁₁ A₁₂] (n × n + m); A₁₁ must be positive definite.

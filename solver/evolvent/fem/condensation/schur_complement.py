@@ -41,7 +41,7 @@ __all__ = [
 def compliance(
     stiffness: sp.spmatrix, functionals: sp.spmatrix, free: Ints | None = None,
     settings: DissectionSettings = DEFAULT_DISSECTION, graph: sp.spmatrix | None = None,
-) -> Floats:  # fmt: skip
+) -> Floats:
     """Compliance C = P K⁻¹ Pᵀ (m × m, symmetric; mm/N for displacements). Peak memory above K and P: about twice C.
 
     stiffness: K (n × n) [N/mm].
@@ -156,7 +156,7 @@ class SectorSystem:
         stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints, graph: sp.spmatrix | None = None,
         free: Ints | None = None, settings: DissectionSettings = DEFAULT_DISSECTION,
         observed: sp.spmatrix | None = None,
-    ) -> SectorSystem:  # fmt: skip
+    ) -> SectorSystem:
         """The system of a sector.
 
         stiffness: K (n × n) [N/mm].
@@ -200,7 +200,7 @@ class SectorRecovery:
     def __init__(
         self, stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints,
         settings: DissectionSettings = DEFAULT_DISSECTION,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self._interior, self._cut = _split(stiffness.shape[0], low, high)
         self._loads = functionals.tocsc()[:, self._interior].T.tocsr()
         self._coupling = _restricted(stiffness, self._interior, self._cut)
@@ -233,7 +233,7 @@ def _split(size: int, low: Ints, high: Ints, free: Ints | None = None) -> tuple[
 def _ordered(
     stiffness: sp.spmatrix, functionals: sp.spmatrix, interior: Ints, cut: Ints, corner: sp.coo_matrix,
     settings: DissectionSettings, graph: sp.spmatrix | None,
-) -> OrderedMatrix:  # fmt: skip
+) -> OrderedMatrix:
     """[K Pᵀ; P 0]: rows of the interior to eliminate, cut faces and functionals retained."""
     size, count = stiffness.shape[0], functionals.shape[0]
     columns = np.concatenate([interior, cut, size + np.arange(count)])

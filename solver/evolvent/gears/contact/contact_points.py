@@ -58,7 +58,7 @@ class ContactPoints:
 
 def contact_points(
     geometry: ContactGeometry, traction: Floats, friction: float, extra: tuple[float, float]
-) -> ContactPoints:  # fmt: skip
+) -> ContactPoints:
     """The points under pressure, from tractions (q, k) [MPa] at all points. extra: the rotations [rad] beyond the
     nominal ones in this equilibrium, near those of the search."""
     pair, searched, operator = geometry.stand.pair, geometry.stand.extra, geometry.operator

@@ -93,7 +93,7 @@ class GearContact:
 def gear_contact(
     bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float,
     displaced: Mapping[int, Displaced] = MappingProxyType({}),
-) -> GearContact:  # fmt: skip
+) -> GearContact:
     """Searches all tooth pairs that may touch at this stand.
 
     half_width: of the window [mm of profile arc], infinite where the whole flanks are searched.

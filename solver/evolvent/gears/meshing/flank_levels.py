@@ -15,7 +15,7 @@ from evolvent.gears.meshing.element_sizes import (
     FlankNeeds,
     flank_needs,
     sector_resolution,
-)  # fmt: skip
+)
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.axial_layers import fewest_layers
@@ -67,7 +67,7 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
         sector_resolution(problem, member), profile_elements=rows, face_elements=layers, end_size_ratio=1.0,
         graded_middles=True,
         layer_depths=(float(depths[0]), float(depths[1]), float(depths[2])),
-    )  # fmt: skip
+    )
     levels = _levels(count, factor, float(depths[0]), needs)
     wanted_rows = needs.rows * math.sqrt(problem.lightest.torque / problem.torque)  # 2b_H grows with √torque
     return LevelledSector(coarse, tuple(levels[: max(1, math.ceil(math.log2(wanted_rows / rows) - 1e-9))]))

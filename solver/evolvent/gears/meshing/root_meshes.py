@@ -45,7 +45,7 @@ def finer_roots(sector: SectorResolution, times: int = FINER) -> SectorResolutio
         sector, fillet_elements=times * sector.fillet_elements, back_elements=times * sector.back_elements,
         neck_elements=times * sector.neck_elements, core_elements=times * sector.core_elements,
         band_depth=sector.band_depth / times, band_below_layers=False,
-    )  # fmt: skip
+    )
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ class ContactWidth:
         ξ = self.roll_distance
         half_width, radius, *facet = (
             np.interp([x], ξ, each) for each in (self.half_width, self.radius, *self.facet.T)
-        )  # fmt: skip
+        )
         return ContactWidth(np.array([x]), half_width, radius, np.column_stack(facet))
 
 

@@ -46,7 +46,7 @@ def _spur_limit(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, float], 
     slices = [
         (gear.sign * float(ξ), result, cut, k)
         for result, cut in cuts for k, ξ in enumerate(cut.roll_distance) if gear.sign * ξ > 0.0
-    ]  # fmt: skip
+    ]
     edge = min((distance for distance, _, cut, k in slices if cut.edge[k]), default=np.inf)
     outside = [each for each in slices if each[0] < edge]
     if edge == np.inf or not outside:

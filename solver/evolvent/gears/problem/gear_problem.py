@@ -164,7 +164,7 @@ class GearProblem:
             *(gear.modifications.varies_over_the_face for gear in gears),
             *(gear.support.is_partial(gear.face_width) or gear.thin_web is not None for gear in gears),
             *(chart is not None and chart.varies_over_the_face for chart in self.flanks),
-        )  # fmt: skip
+        )
         return not any(varies) and gears[0].face_width == gears[1].face_width
 
     @property

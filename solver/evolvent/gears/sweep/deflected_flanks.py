@@ -51,7 +51,7 @@ class DeflectedEquilibrium:
 def deflected_equilibrium(
     model: GearModel, contact: GearContact, equilibrium: Equilibrium, friction: float,
     history: FrictionHistory | None, span: float,
-) -> DeflectedEquilibrium:  # fmt: skip
+) -> DeflectedEquilibrium:
     """Searches and solves in turn until the search moves the flanks no more.
 
     contact, equilibrium: of undeflected flanks.
@@ -115,7 +115,7 @@ def _displaced_flanks(geometry: ContactGeometry, equilibrium: Equilibrium) -> di
 def _equilibrium(
     model: GearModel, contact: GearContact, patch: ContactPatch, friction: float, history: FrictionHistory | None,
     span: float,
-) -> tuple[Equilibrium, float]:  # fmt: skip
+) -> tuple[Equilibrium, float]:
     """Equilibrium of these flanks, started from a contact patch, and the stiffness without friction. Raises
     NotConverged."""
     geometry = contact.geometry

@@ -30,7 +30,7 @@ class Solved:
 def solve_position(
     model: GearModel, shared: SharedPosition, friction: float, before: PreviousJump | None, span: float,
     solved: Sequence[Solved] = (), near: InitialGuess | None = None,
-) -> tuple[PositionResult, Solved]:  # fmt: skip
+) -> tuple[PositionResult, Solved]:
     """Equilibrium with friction.
 
     before: friction history at the contact's nodes, None without friction.
@@ -53,7 +53,7 @@ def solve_position(
 def frictional_equilibrium(
     geometry: ContactGeometry, system: CondensedSystem, friction: float, smooth: Equilibrium,
     before: PreviousJump, span: float, guess: InitialGuess | None = None,
-) -> Equilibrium:  # fmt: skip
+) -> Equilibrium:
     """Equilibrium with friction after a step Δφ = span [rad]. smooth: the one without friction; before: friction
     history at the contact's nodes; guess: of the solution. Raises NotConverged."""
     slip = slip_increment(geometry, before, span)

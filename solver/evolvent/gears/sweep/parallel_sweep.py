@@ -36,7 +36,7 @@ PREPARING = 2  # ranks: from further away a search takes longer
 def sweep_on_ranks(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, comm: MPI.Comm, begin: int = 0,
     known: Mapping[int, KnownSolution] = NONE_KNOWN,
-) -> Generator[SweptPosition, None, None]:  # fmt: skip
+) -> Generator[SweptPosition, None, None]:
     """`sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all ranks, which must close it
     together where they leave it early."""
     if comm.size == 1:

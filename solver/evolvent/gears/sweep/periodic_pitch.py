@@ -36,7 +36,7 @@ SLOWEST = 0.95  # largest ratio of changes from pitch to pitch: beyond it the er
 def sweep_until_periodic(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, comm: MPI.Comm,
     before: Sequence[Floats] = (),
-) -> Iterator[SweptPosition]:  # fmt: skip
+) -> Iterator[SweptPosition]:
     """The positions of a `uniform_pitch`, then those solved `again` with the coefficients that are not yet periodic;
     without friction it ends with the pitch.
 

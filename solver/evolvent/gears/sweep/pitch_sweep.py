@@ -134,7 +134,7 @@ def initial_state(frictions: Sequence[float]) -> SweepState:
 def sweep_pitch(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, begin: int = 0,
     common: SharedPosition | None = None, known: Mapping[int, KnownSolution] = NONE_KNOWN,
-) -> Iterator[SweptPosition]:  # fmt: skip
+) -> Iterator[SweptPosition]:
     """Solves pitch.angles[begin:] in turn. A position that fails is approached by up to four halvings of the step.
 
     common: what the coefficients share of the first position, None where it is to be searched.
@@ -152,7 +152,7 @@ def sweep_pitch(
 def _advanced(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float, halvings: int,
     common: SharedPosition | None = None, known: KnownSolution | None = None,
-) -> SweptPosition:  # fmt: skip
+) -> SweptPosition:
     """The position at an angle, reached in up to 2^halvings steps. Raises NotConverged."""
     try:
         return _position(model, frictions, state, angle, span, common, known)
@@ -170,7 +170,7 @@ def _advanced(
 def _position(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float,
     shared: SharedPosition | None, known: KnownSolution | None,
-) -> SweptPosition:  # fmt: skip
+) -> SweptPosition:
     """The position at an angle, in one step. Raises NotConverged, SearchError."""
     begin = time.perf_counter()
     if shared is None:

@@ -91,7 +91,7 @@ class PositionResult:
 def position_result(
     model: GearModel, contact: GearContact, equilibrium: Equilibrium, friction: float, stiffness: float,
     frictionless_iterations: int,
-) -> PositionResult:  # fmt: skip
+) -> PositionResult:
     """Of a converged state. stiffness: see PositionResult."""
     geometry, k = contact.geometry, equilibrium.force.shape[1]
     torques = [float(np.sum(spin[:, :k] * equilibrium.force)) for spin in geometry.spins]

@@ -136,7 +136,7 @@ class SharedPosition:
 def shared_position(
     model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: ContactPatch | None,
     threads: Threads = nullcontext, known: KnownSolution | None = None, exact: bool = False,
-) -> SharedPosition:  # fmt: skip
+) -> SharedPosition:
     """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
     angle: of the pinion [rad].

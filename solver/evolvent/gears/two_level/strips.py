@@ -85,7 +85,7 @@ class LoadedStrips:
             tuple(strip for strip, _ in used), tuple(len(first) for _, first in used),
             _places([(first + node_offset(s.source, rows), s.sources) for s, first in used], rows),
             _places([(first + node_offset(s.start, rows), s.moved) for s, first in used], rows),
-        )  # fmt: skip
+        )
 
     @property
     def nbytes(self) -> int:

@@ -47,7 +47,7 @@ class Strip:
         return replace(
             self, change=kept.reshape(len(kept), -1), moved=(kept.shape[1], kept.shape[2]),
             start=(self.start[0] + levels.start, self.start[1] + rows.start),
-        )  # fmt: skip
+        )
 
     def blocks(self) -> Reals:
         """`change` as (q, p, 3, Q, P, 3)."""
@@ -128,7 +128,7 @@ class _Patches:
         return Strip(
             change.reshape(len(own.change), -1).astype(np.float32), own.sources, _pair(high - low), _pair(first),
             _pair(low), layers,
-        )  # fmt: skip
+        )
 
 
 def _part(box: Ints) -> tuple[slice, slice]:

@@ -131,7 +131,7 @@ class Towers:
     def __init__(
         self, body: CoarseBody, base_radius: float, twist: float, held: tuple[str, ...], flux_safety: float | None,
         is_followed: bool = False,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self._body, self._base_radius, self._twist = body, base_radius, twist
         self._held, self._flux_safety = held, flux_safety
         self._is_plain = flux_safety is None or is_followed

@@ -74,7 +74,7 @@ class Archive:
         """Writes the position with this index and the state after it. Raises WriteError, FolderError."""
         arrays: dict[str, Any] = {
             "angle": position.angle, "again": position.again, "closes": position.closes, "count": len(position.results),
-        }  # fmt: skip
+        }
         for i, result in enumerate(position.results):
             arrays |= {f"{i}/{name}": value for name, value in result_arrays(result).items()}
         self.write_arrays(f"position_{index:04d}.npz", arrays)
@@ -137,7 +137,7 @@ class Archive:
         arrays: dict[str, Any] = {
             "fingerprint": self.fingerprint, "complete": complete, "extra": np.array(state.extra),
             "memories": len(state.histories),
-        }  # fmt: skip
+        }
         for i, history in enumerate(state.histories):
             if history is not None:
                 arrays |= {
@@ -145,7 +145,7 @@ class Archive:
                     f"{i}/pinion_rows": history.rows[0], f"{i}/wheel_rows": history.rows[1],
                     f"{i}/pinion_forces": history.forces[0], f"{i}/wheel_forces": history.forces[1],
                     f"{i}/flux": history.flux,
-                }  # fmt: skip
+                }
         return arrays
 
     def _position(self, index: int, pair: GearPair) -> SweptPosition:

@@ -31,5 +31,5 @@ def gif(frames: Sequence[Image.Image]) -> bytes:
     content = io.BytesIO()
     first.save(
         content, format="GIF", save_all=True, append_images=others, duration=FRAME_MS, loop=0, optimize=True
-    )  # fmt: skip
+    )
     return content.getvalue()

@@ -7,7 +7,7 @@ UNITS = {
     "_mm_per_rad": "mm/rad", "_mm_per_s": "mm/s", "_kg_m2": "kg·m²", "_kg": "kg", "_rpm": "r/min", "_Nm": "N·m",
     "_N": "N", "_MPa": "MPa", "_GPa": "GPa", "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%",
     "_MB": "MB", "_Hz": "Hz", "_ms": "ms", "_s": "s",
-}  # fmt: skip
+}
 """Ending of a name -> unit."""
 
 SYMBOLS = {"face_load_factor": "K_Hβ"}

@@ -83,7 +83,7 @@ def sheet(title: str, subtitle: str, size: tuple[float, float] = (9.6, 5.4)) -> 
     figure.text(
         left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK,
         parse_math=False,  # a user's words, not a formula
-    )  # fmt: skip
+    )
     width = TextPath((0.0, 0.0), subtitle, size=10.0).get_extents().width / 72.0 if subtitle else 0.0
     subtitle_size = 10.0 * min(1.0, (size[0] - 0.3) / max(width, 1e-9))
     figure.text(left, 1.0 - 0.42 / size[1], subtitle, va="top", ha="left", fontsize=subtitle_size, color="#444444")

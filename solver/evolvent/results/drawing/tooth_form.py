@@ -42,7 +42,7 @@ def tooth_form_figure(title: str, pair: GearPair) -> Figure:
         figure, "Seen from z < 0, loaded flank: right. Relief, crowning and charts are left out.",
         *(["Dashed: the tooth without thickness allowance."] if _are_thin(pair) else []),
         *(["Thick: where the bore is held."] if has_sections else []),
-    )  # fmt: skip
+    )
     return figure
 
 
@@ -58,7 +58,7 @@ def key_diameters(pair: GearPair, member: Member) -> dict[str, float]:
         "d_a": gear.tip_diameter, "d_Fa": gear.tip_form_diameter, "d_w": pair.working_pitch_diameters[member],
         "d": gear.reference_diameter, "d_Nf": pair.active_start_diameters[member], "d_Ff": gear.root_form_diameter,
         "d_b": gear.base_diameter, "d_f": gear.root_diameter,
-    }  # fmt: skip
+    }
     if gear.tip_edge is None:
         del found["d_Fa"]
     return dict(sorted(found.items(), key=lambda item: -item[1]))
@@ -115,4 +115,4 @@ def _draw_diameters(axes: Axes, diameters: dict[str, float], width: float) -> No
         axes.annotate(
             f"{name} = {diameter:.3f}", (width, y[-1]), (1.06 * width, free), color=INK, fontsize=8.5, va="center",
             annotation_clip=False, arrowprops={"arrowstyle": "-", "color": FAINT, "lw": 0.5},
-        )  # fmt: skip
+        )

@@ -209,5 +209,5 @@ def _cut_off(axes: Axes, ξ: float, sliding: float, colour: str) -> None:
     axes.annotate(
         value, (ξ, -MOST_SLIDING), (36.0 * inwards, 0.0), textcoords="offset points", color=colour, fontsize=9,
         ha="left" if ξ < 0.0 else "right", va="bottom",
-    )  # fmt: skip
+    )
     axes.plot(ξ, -MOST_SLIDING, marker="v", color=colour, markersize=7.0, clip_on=False)

@@ -54,7 +54,7 @@ def modified_flanks(run: RunData) -> Figure:
         figure,
         "Normal to the involute helicoid, over the path of contact: pinion's tip and wheel's root are at the top. "
         "Flank charts are left out.",
-    )  # fmt: skip
+    )
     return figure
 
 

@@ -72,7 +72,7 @@ def gear_picture(run: RunData, result: PositionResult, gear: Member, top: float,
 
 
 def flank_picture(run: RunData, result: PositionResult, patch: Patch, values: Floats, top: float,
-                  size: tuple[int, int]) -> Image:  # fmt: skip
+                  size: tuple[int, int]) -> Image:
     """Image of one gear with the same values on all its loaded flanks, without the other gear. values: (n, m) on the
     patch; top: value at the upper end of the colour scale; size: width and height in pixels."""
     scene, gear, near = _plotter(size), patch.gear, list(range(-NEAR, NEAR + 1))
@@ -103,7 +103,7 @@ def _plotter(size: tuple[int, int]) -> Any:
 def _add_gear(
     scene: Any, run: RunData, result: PositionResult, gear: Member, teeth: list[int], opacity: float,
     bare: set[int] | None = None,
-) -> None:  # fmt: skip
+) -> None:
     """Adds the teeth of a gear. bare: teeth whose loaded flanks are left out, by default those in contact."""
     placed = placed_teeth(run, result, gear, teeth, set(contact_teeth(result)) if bare is None else bare)
     assert placed is not None
@@ -132,7 +132,7 @@ def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> 
     scene.add_mesh(
         mesh, scalars="values", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, above_color=OVER,
         show_scalar_bar=False, interpolate_before_map=True, lighting=False,
-    )  # fmt: skip
+    )
     rim = mesh.extract_feature_edges(feature_edges=False, manifold_edges=False, non_manifold_edges=False)
     scene.add_mesh(rim, color=FAINT, line_width=1.5, lighting=False)
 

@@ -44,7 +44,7 @@ def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
         chart_warnings(run.scene),
         _about_the_load(run), _about_the_mesh(run, mesh), _about_tip_edges(run), _about_relief(run),
         _about_large_bars(rows), _about_error_bars(run), _about_spacing(run, rows),
-    )  # fmt: skip
+    )
     return tuple(sentence for each in about for sentence in each)
 
 
@@ -122,7 +122,7 @@ def _about_relief(run: RunData) -> Iterator[str]:
     kinks = [
         kink for index in range(len(run.frictions))
         if (kink := largest_kink(run, index)) is not None and not kink.pressure <= largest_peak(run, index).pressure
-    ]  # fmt: skip
+    ]
     if not kinks:
         return
     kink = max(kinks, key=lambda kink: kink.pressure)

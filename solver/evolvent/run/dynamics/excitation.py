@@ -37,7 +37,7 @@ from evolvent_meshes.errors import EvolventError
 def run_excitation(
     loads: SceneTorques, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False,
     prepare: Preparer = prepare_model,
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """Computes the excitation under some torques and writes its tables and picture to `out`. Returns a sentence where
     a picture could not be drawn or error bars not be estimated. Collective.
 
@@ -77,7 +77,7 @@ def writing_results(
 def computed_excitation(
     loads: SceneTorques, comm: MPI.Comm, progress: Progress, kept: KeptPositions | None = None,
     prepare: Preparer = prepare_model,
-) -> MeshExcitation:  # fmt: skip
+) -> MeshExcitation:
     """Of the scene's gears under each torque. kept: positions on disk. prepare: see `run_excitation`. Collective."""
     problem = loads.problem
     angles = np.array(uniform_pitch(problem.pair.pinion.z, loads.scene.sweep.positions).angles)
@@ -88,7 +88,7 @@ def computed_excitation(
 def companion_of(
     excitation: MeshExcitation, loads: SceneTorques, comm: MPI.Comm, progress: Progress,
     kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
-) -> CoarseExcitation:  # fmt: skip
+) -> CoarseExcitation:
     """The same positions and torques on elements of twice the size, where the scene asks for error bars; an error of
     meshing or solving becomes its `failure`: results are not lost for their error bars. Collective."""
     if not wanted_output(loads.scene).error_bars:
@@ -105,7 +105,7 @@ def companion_of(
 def loaded_pitch(
     loads: SceneTorques, angles: Floats, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
     kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
-) -> LoadedMesh:  # fmt: skip
+) -> LoadedMesh:
     """The pitch under each torque, on the sectors that `mesh` makes. Collective.
 
     stage: name of the solution in the progress.

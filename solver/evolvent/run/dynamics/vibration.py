@@ -65,7 +65,7 @@ that speed, 1 % at 1.09 of it."""
 def run_dynamics(
     scene: Scene, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False,
     prepare: Preparer = prepare_model,
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """Computes excitation and vibration and writes their tables and pictures to `out`. Returns sentences on what a
     reader has to know, pictures that could not be drawn among them. Collective.
 
@@ -97,13 +97,13 @@ def accuracy(section: DynamicsSection) -> Accuracy:
     return Accuracy(
         section.base_pitch_deviation_um, section.profile_deviation_um, section.tolerance_class, section.flank_surface,
         section.contact_endurance_MPa,
-    )  # fmt: skip
+    )
 
 
 def _written(
     excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques, section: DynamicsSection,
     settings: DriveSettings, out: Path, progress: Progress,
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """Sweeps the speeds and writes everything, in place of what an earlier call has written. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), loads.problem
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
@@ -141,7 +141,7 @@ def _written(
 def _over_torque(
     excitation: MeshExcitation, problem: GearProblem, vibrating: Drive, settings: DriveSettings,
     section: DynamicsSection, progress: Progress,
-) -> TorqueMap:  # fmt: skip
+) -> TorqueMap:
     """The section's map; without any rows where it wants none. vibrating: under the scene's torque."""
     loads = [vibrating.model.load * percent / 100.0 for percent in section.map_percents]
     if loads:
@@ -197,7 +197,7 @@ def body_resonances(vibrating: Drive, fastest: float) -> list[str]:
 
 def _warnings(
     vibrating: Drive, settings: DriveSettings, known: DriveSummary, swept: SpeedSweep
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """What a reader of the results has to know."""
     found, deflection = [], vibrating.model.load / vibrating.mean_stiffness
     if settings.bodies is None:
@@ -257,7 +257,7 @@ def _branch_warnings(swept: SpeedSweep) -> list[str]:
 def _not_repeating(vibrating: Drive, swept: SpeedSweep) -> list[str]:
     """Motions whose largest force a longer look may find larger."""
     wild = [float(period) for runs in (swept.up, swept.down) for period, run in zip(swept.periods, runs)
-            if run.repeats == 0 and not run.escaped]  # fmt: skip
+            if run.repeats == 0 and not run.escaped]
     if not wild:
         return []
     slowest, fastest = (speed_of(vibrating, period) for period in (max(wild), min(wild)))

@@ -80,7 +80,7 @@ def _excitations(
 def _swept(
     name: OtherVibration, excitation: MeshExcitation, pair_on: Callable[[MeshExcitation], Drive], speeds: Floats,
     computed: Callable[[], None],
-) -> OtherVibration:  # fmt: skip
+) -> OtherVibration:
     """With its vibration, or why there is none."""
     try:
         pair = pair_on(excitation)

@@ -16,5 +16,5 @@ OF_EXCITATION = EXCITATION, HARMONICS, EXCITATION_FACTS, f"pictures/{EXCITATION_
 OF_DYNAMICS = (
     EXCITATION, HARMONICS, EXCITATION_FACTS, RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES, TORQUE_MAP,
     *(f"pictures/{name}" for name in PICTURES),
-)  # fmt: skip
+)
 """What `evolvent dynamics` writes; an excitation that is computed anew removes it, as it belongs to another one."""

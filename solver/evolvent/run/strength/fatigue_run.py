@@ -79,7 +79,7 @@ def run_fatigue(
 
 def _certified(
     scene: Scene, comm: MPI.Comm, progress: Progress, prepare: Preparer
-) -> tuple[Scene, RunData | None]:  # fmt: skip
+) -> tuple[Scene, RunData | None]:
     """The pitch, on rank 0, and the scene that it belongs to: on deflected flanks where its energy does not balance
     otherwise. Collective. Raises BalanceError."""
     try:
@@ -138,7 +138,7 @@ def _materials(run: RunData) -> tuple[FatigueMaterial, FatigueMaterial]:
             section.compression_factor, section.normal_factor,
         )
         for each in run.scene.materials()
-    )  # fmt: skip
+    )
     return pinion, wheel
 
 
@@ -162,7 +162,7 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
     tables: dict[str, Iterable[Any]] = {
         FATIGUE: fatigue_rows(run.pair, found), FATIGUE_LIFE: life_rows(found, section.exponents),
         FATIGUE_MAP: map_rows(run.pair, found), FATIGUE_DEPTH: depth_rows(run.pair, found),
-    }  # fmt: skip
+    }
     for name, rows in tables.items():
         if values := [asdict(row) for row in rows]:  # one coefficient alone has no lives to compare
             folder.write_text(name, csv_text(values))

@@ -44,7 +44,7 @@ def scene_root_meshes(scene: Scene) -> tuple[RootMesh, RootMesh]:
 def pitch_roots(
     scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
     angles: Sequence[float] | None = None, prepare: Preparer = prepare_model,
-) -> PitchRoots:  # fmt: skip
+) -> PitchRoots:
     """Of both gears at each friction coefficient. Collective.
 
     mesh: of `root_meshes`. stage: of the progress, for the positions. angles: beyond the uniform ones; None: see

@@ -126,7 +126,7 @@ class _Worker:
                 [*module, str(theirs.fileno()), str(os.getpid())],
                 env={**os.environ, **ONE_THREAD, "PYTHONPATH": path}, stdin=subprocess.DEVNULL,
                 pass_fds=[theirs.fileno()], process_group=0,  # Control-C is for this process
-            )  # fmt: skip
+            )
         self.is_ready = False
         """Whether it has started."""
         self.order: Order | None = None

@@ -137,5 +137,5 @@ def _check(task: SceneTask, prepare: Preparer) -> list[str]:
 COMPUTING: Mapping[Computation, Callable[[SceneTask, Preparer], list[str]]] = {
     "check": _check, "run": _run, "excitation": _excitation, "dynamics": _dynamics, "strength": _strength,
     "wear": _wear,
-}  # fmt: skip
+}
 """Computation -> what computes a scene in its folder and returns sentences for a reader."""

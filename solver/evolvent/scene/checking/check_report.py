@@ -115,7 +115,7 @@ def _modification_rows(pair: GearPair) -> list[Row]:
     return [
         _both(*named, "µm", 1, (getattr(given, amount) for given in each))
         for amount, named in AMOUNTS.items() if amount in shown
-    ]  # fmt: skip
+    ]
 
 
 def _chart_rows(scene: Scene) -> list[Row]:

@@ -64,7 +64,7 @@ def step_lines(scene: Scene, section: TransientSection) -> list[Line]:
         (f"{each.speed:g} r/min", "", "", (
             f"{each.mesh_frequency:.4g}", f"{1e6 * each.length:.4g}", f"{each.a_period:.3g}"))
         for each in planned_steps(scene, section)
-    ]  # fmt: skip
+    ]
 
 
 def transient_warnings(scene: Scene) -> list[str]:

@@ -64,7 +64,7 @@ def without_main_key(scene: BaseModel) -> list[InputProblem]:
     return [
         _problem(each, scene) for each in _without_effect(scene)
         if not any(is_given(scene, name) for name in each.mains)
-    ]  # fmt: skip
+    ]
 
 
 def effectless_keys(scene: BaseModel) -> list[str]:
@@ -73,7 +73,7 @@ def effectless_keys(scene: BaseModel) -> list[str]:
         f"{each.key} = {shown(value_at(scene, each.key))} has no effect: "
         + "; ".join(f"{name} is {shown(value_at(scene, name))}" for name in each.mains if is_given(scene, name)) + "."
         for each in _without_effect(scene) if any(is_given(scene, name) for name in each.mains)
-    ]  # fmt: skip
+    ]
 
 
 def value_at(scene: BaseModel, key: str) -> Any:
@@ -104,7 +104,7 @@ def _problem(dependent: Dependent, scene: BaseModel) -> InputProblem:
     remedy = f"give {dependent.wanted}, or delete the key"
     section, _, name = dependent.key.rpartition(".")
     if (other := OTHER_GEAR.get(section)) and any(is_given(scene, f"{other}.{main.rpartition('.')[2]}")
-                                                  for main in dependent.mains):  # fmt: skip
+                                                  for main in dependent.mains):
         has = f"{other} has {', '.join(main.rpartition('.')[2] for main in dependent.mains)}"
         remedy = f"the {has}: write it as {other}.{name} where that is meant; else {remedy}"
     allowed = f"only with {dependent.wanted}, without which it has no effect"

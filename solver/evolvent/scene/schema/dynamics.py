@@ -39,7 +39,7 @@ def _inertia(gear: str) -> Any:
         "a number from 1e-12 to 1e9, in kg·m²",
         "mind the unit: 1 kg·m² is 1e6 kg·mm²; or delete the key",
         default=None, ge=1e-12, le=1e9,
-    )  # fmt: skip
+    )
 
 
 def _percents_remedy(given: tuple[float, ...]) -> str:
@@ -93,11 +93,11 @@ class DynamicsSection(SceneSection):
         f"a list of up to {MOST_TORQUES} {PERCENTS}",
         "a force of twice the static one is usual near resonance: go on to 200",
         default=(5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0), max_length=MOST_TORQUES,
-    )  # fmt: skip
+    )
     damping_ratio: float = key(
         "damping of the mesh over the critical one, at the mean stiffness with what gives way in series",
         "a number from 0.001 to 1", "gear pairs have 0.02 to 0.1", default=0.05, ge=1e-3, le=1,
-    )  # fmt: skip
+    )
     damped_apart: bool = key(
         "whether it acts in free flight, too, as in the model of He et al. 2022", "true or false", default=False
     )
@@ -108,60 +108,60 @@ class DynamicsSection(SceneSection):
         "backlash along the line of action in the transverse section, from flank to flank; by default that of the "
         "gears' tooth thicknesses at their centre distance, where these give one",
         "a number from 0 to 1e5, in µm", "delete the key for the default", default=None, ge=0, le=1e5,
-    )  # fmt: skip
+    )
     density_kg_m3: float = key(
         "density of both gears", "a number from 100 to 30000, in kg/m³", "steel has 7850", default=7850.0, ge=100,
         le=30000,
-    )  # fmt: skip
+    )
     pinion_inertia_kg_m2: float | None = _inertia("pinion")
     wheel_inertia_kg_m2: float | None = _inertia("wheel")
     series_stiffness_N_per_um: float | None = key(
         "stiffness along the line of action of what gives way with the mesh, shafts and bearings, without inertia; by "
         "default nothing does",
         "a number from 0.001 to 1e9, in N/µm", "delete the key for the default", default=None, ge=1e-3, le=1e9,
-    )  # fmt: skip
+    )
 
     operating_rpm: float | None = key(
         "speed of the pinion at which `evolvent run` computes contact and wear, under the mesh force of the vibration; "
         "by default under the constant torque",
         f"a number above 0 up to {FASTEST:g}, in r/min", "delete the key for the default", default=None, gt=0,
         le=FASTEST,
-    )  # fmt: skip
+    )
     coming: Literal["up", "down"] = key(
         "from which side the pair has come to that speed, where its vibration depends on it: running up or down",
         '"up" or "down"', needs=("operating_rpm",), default="up",
-    )  # fmt: skip
+    )
 
     histories_rpm: tuple[float, ...] = key(
         "speeds of the pinion of which the motion over time is written and drawn; they join those of `speeds`",
         HISTORIES, "take the speeds of interest from response.csv", default=(), max_length=6,
-    )  # fmt: skip
+    )
     map_percents: tuple[float, ...] = key(
         "torques under which the speeds are run through, too, for a map of the vibration over speed and torque, in "
         "percent of load.torque_Nm; they need not be among torque_percents; by default there is no map",
         f"a list of {MAP_PERCENTS}, none above the heaviest of torque_percents",
         "resonance takes two to three times the static force: go on to a third of the heaviest of torque_percents",
         default=(), max_length=MAP[1],
-    )  # fmt: skip
+    )
     map_speeds: int = key(
         "number of speeds of that map, evenly spaced", f"a whole number from 2 to {MOST_SPEEDS}",
         needs=("map_percents",), default=100, ge=2, le=MOST_SPEEDS,
-    )  # fmt: skip
+    )
     base_pitch_deviation_um: float | None = key(
         "f_pb, deviation of the transverse base pitch, the larger of both gears, for K_v of ISO 6336-1 beside the "
         "computed factor; without it and f_fα there is no K_v",
         DEVIATION, "it is f_pt cos α_t of ISO 1328-1", default=None, gt=0, le=1000,
-    )  # fmt: skip
+    )
     profile_deviation_um: float | None = key(
         "f_fα, profile form deviation, likewise", DEVIATION, "ISO 1328-1 has it by the tolerance class", default=None,
         gt=0, le=1000,
-    )  # fmt: skip
+    )
     tolerance_class: int | None = key(
         "of ISO 1328-1, the coarser of both gears, likewise; from 6 on tip relief does not count; by default it does",
         "a whole number from 1 to 12", "give base_pitch_deviation_um and profile_deviation_um, too: they do not follow "
         "from it here",
         default=None, ge=1, le=12,
-    )  # fmt: skip
+    )
     flank_surface: Literal["hardened", "through_hardened", "cast_iron"] = key(
         "which running-in ISO 6336-1 reckons with: surface hardened or nitrided teeth, through hardened or normalised "
         "ones, or grey cast iron",
@@ -173,7 +173,7 @@ class DynamicsSection(SceneSection):
         "σ_Hlim, allowable stress number, likewise: of through hardened teeth it decides the running-in, and of teeth "
         "without tip relief the relief that wear gives them; by default there is none",
         "a number from 100 to 3000, in MPa", "ISO 6336-5 has it", default=None, ge=100, le=3000,
-    )  # fmt: skip
+    )
 
     @field_validator("speed_rpm", "torque_percents", "histories_rpm", "map_percents", mode="before")
     @classmethod
@@ -217,7 +217,7 @@ class DynamicsSection(SceneSection):
                     "contact_endurance_MPa", NOTHING, "σ_Hlim, with flank_surface = \"through_hardened\"",
                     "give it in MPa; ISO 6336-5 has it",
                 )
-            )  # fmt: skip
+            )
         return self
 
 
@@ -227,51 +227,51 @@ class TransientSection(SceneSection):
     speeds_rpm: Annotated[tuple[Speed, ...], BeforeValidator(as_tuple)] = key(
         "speeds of the pinion", TRANSIENT_SPEEDS, "write transient.speeds_rpm = [1500, 3000]", min_length=1,
         max_length=12,
-    )  # fmt: skip
+    )
     drive: Literal["free", "constant_speed"] = key(
         "how the gears turn: both swing against each other, as in the torsional model, or the gear without the torque "
         "turns at constant speed, as behind a large flywheel",
         '"free" or "constant_speed"', default="free",
-    )  # fmt: skip
+    )
     start: Literal["statics", "rest"] = key(
         "how the motion begins: under load at speed, from statics; or with a blow, one gear at its speed at once and "
         "the other one at rest, the flanks just touching. From rest the first two mesh periods are reported, too",
         '"statics" or "rest"', default="statics",
-    )  # fmt: skip
+    )
     mesh_periods: int = key(
         "mesh periods that are computed at most, until the motion repeats", "a whole number from 2 to 10000",
         "raise it where a sentence says that a motion does not repeat yet", default=60, ge=2, le=10_000,
-    )  # fmt: skip
+    )
     steady_change: float = key(
         "largest change of the transmission error from one mesh period to the next, over its peak-to-peak value, at "
         "which the motion counts as steady",
         "a number from 1e-6 to 0.1", default=0.005, ge=1e-6, le=0.1,
-    )  # fmt: skip
+    )
     mode_damping_ratio: float = key(
         "damping of each natural mode of the gears, over its critical one", "a number from 0 to 1", default=0.01, ge=0,
         le=1,
-    )  # fmt: skip
+    )
     modes_per_harmonic: int | None = key(
         "natural modes of each harmonic of the ring of teeth; by default all modes that have four time steps a "
         "period at the highest speed, and at least one of each harmonic",
         "a whole number from 0 to 50", "delete the key for the default", default=None, ge=0, le=50,
-    )  # fmt: skip
+    )
     spectral_radius: float = key(
         "what a time step leaves of motions that are too fast for it", "a number from 0 to 1",
         "0.8 is usual; 0 for speeds at which a step takes several natural periods", default=0.8, ge=0, le=1,
-    )  # fmt: skip
+    )
     tolerance: float | None = key(
         "estimated error of the speeds in a time step, in the norm of the kinetic energy, over the speed that the "
         "largest energy so far would give: a step from one of the sweep's positions to the next that has more, or "
         "cannot be solved, is taken in halves, quarters and so on; by default nothing is divided",
         "a number from 1e-6 to 1", "0.01 is coarse, 0.001 fine; delete the key for equal steps", default=None, ge=1e-6,
         le=1,
-    )  # fmt: skip
+    )
     most_parts: int = key(
         "with a tolerance, equal parts into which the way from one position to the next is divided at most; a sentence "
         "says where they do not reach it",
         PARTS, f"{MANY_PARTS} is the default", needs=("tolerance",), default=MANY_PARTS, ge=2, le=MOST_PARTS,
-    )  # fmt: skip
+    )
 
     @model_validator(mode="after")
     def _fitting(self) -> Self:

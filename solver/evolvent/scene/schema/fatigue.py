@@ -29,32 +29,32 @@ class FatigueSection(SceneSection):
         "depths at which criteria are evaluated, over the half-width of the contact", DEPTHS,
         "begin with 0, 0.02, 0.05, 0.1", min_length=5, max_length=60,
         default=(0.0, 0.01, 0.02, 0.05, 0.1, 0.15, *(round(0.1 * k, 1) for k in range(2, 16)), 2.0, 2.5, 3.0, 4.0, 5.0),
-    )  # fmt: skip
+    )
     yield_stress_MPa: float | None = key(
         "yield stress of the flanks' material, of a hardened case that of the case; without it the criterion of Fatemi "
         "and Socie is left out, and nothing is said of yielding",
         "a number from 50 to 5000", default=None, ge=50, le=5000,
-    )  # fmt: skip
+    )
     tension_factor: float = key(
         "factor a on hydrostatic tension of the criterion of Dang Van: 3 τ_w/σ_w − 1.5 of the fatigue limits in fully "
         "reversed torsion and bending; 0.3 has τ_w/σ_w = 0.6",
         "a number from 0 to 2", default=0.3, ge=0, le=2,
-    )  # fmt: skip
+    )
     compression_factor: float = key(
         "the same on hydrostatic compression; at 0 the locus is constant there, at τ_w; as large as tension_factor it "
         "is the straight line of Dang Van, which is not conservative below rolling contacts",
         "a number from 0 to 2", default=0.0, ge=0, le=2,
-    )  # fmt: skip
+    )
     normal_factor: float = key(
         "factor k on the largest tension on the plane of the criterion of Fatemi and Socie; the default is a choice, "
         "tests of the material have its value",
         "a number from 0 to 5", needs=("yield_stress_MPa",), default=1.0, ge=0, le=5,
-    )  # fmt: skip
+    )
     exponents: Annotated[tuple[Exponent, ...], BeforeValidator(as_tuple)] = key(
         "slopes m, N ∝ value^−m, for which lives are compared, beside those that a criterion has by its source: a "
         "sensitivity, as no source has S-N lines of this form for Tresca, von Mises, Dang Van or Fatemi-Socie here",
         EXPONENTS, max_length=12, default=(8.0, 10.0, 13.0),
-    )  # fmt: skip
+    )
 
     @field_validator("exponents")
     @classmethod

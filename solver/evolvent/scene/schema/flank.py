@@ -38,11 +38,11 @@ class FlankKeys(SceneSection):
     tip_relief_form: Literal["linear", "parabolic"] = key(
         "how the tip relief grows with the roll distance", '"linear" or "parabolic"',
         needs=("tip_relief_um",), default="linear",
-    )  # fmt: skip
+    )
     root_relief_um: float = key(
         "root relief C_αf: material taken off the flank at the profile control diameter", AMOUNT, default=0.0, ge=0,
         le=MOST,
-    )  # fmt: skip
+    )
     root_relief_end_diameter_mm: float | None = key(
         "diameter at which the root relief ends, above which there is none; m_n/2 above the profile control diameter "
         "by default",
@@ -56,7 +56,7 @@ class FlankKeys(SceneSection):
     root_relief_form: Literal["linear", "parabolic"] = key(
         "how the root relief grows with the roll distance from there", '"linear" or "parabolic"',
         needs=("root_relief_um",), default="linear",
-    )  # fmt: skip
+    )
     profile_crowning_um: float = key(
         "profile crowning (barrelling) C_α: material taken off the flank at the tip and at the profile control "
         "diameter, a parabola of the roll distance",
@@ -98,7 +98,7 @@ class FlankKeys(SceneSection):
     end_relief_um: float = key(
         "end relief C_βI = C_βII: material taken off the flank at both ends of the face", AMOUNT, default=0.0, ge=0,
         le=MOST,
-    )  # fmt: skip
+    )
     end_relief_length_mm: float | None = key(
         "length of the end relief at either end of the face; a tenth of the face width by default",
         LENGTH,
@@ -111,7 +111,7 @@ class FlankKeys(SceneSection):
     end_relief_form: Literal["linear", "parabolic"] = key(
         "how the end relief grows with z", '"linear" or "parabolic"',
         needs=("end_relief_um",), default="linear",
-    )  # fmt: skip
+    )
     twist_um: float = key(
         "twist (bias) S_α: profile slope C_Hα at the end z > 0 of the face less that at z < 0, in between linear in z",
         SIGNED,

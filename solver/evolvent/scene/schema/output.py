@@ -34,7 +34,7 @@ class OutputSection(SceneSection):
 
 SkipName = Literal["plane", "friction-terms", "one-pitch", "one-sector", "far-teeth", "window",
                    "deflected-flanks", "coarse-body", "two-level", "reuse", "error-bars", "fields",
-                   "pictures"]  # fmt: skip
+                   "pictures"]
 """Shortcuts that a run takes where its scene allows them: `evolvent.scene.skips`."""
 SKIP_NAMES: tuple[SkipName, ...] = get_args(SkipName)
 

@@ -31,7 +31,7 @@ def key(
     words: dict[str, JsonValue] = {
         "allowed": allowed, "remedy": remedy, "too_small": too_small or remedy, "too_large": too_large or remedy,
         "needs": list(needs), "holding": holding,
-    }  # fmt: skip
+    }
     return Field(default, description=meaning, json_schema_extra=words, **limits)
 
 

@@ -77,13 +77,13 @@ class StrengthSection(SceneSection):
         EDITIONS,
         "write strength.editions = [2006, 2019], or one of the two",
         default=(2006, 2019), min_length=1,
-    )  # fmt: skip
+    )
     tolerance_class: int | None = key(
         "of ISO 1328-1, the coarser of both gears: up to 4 the edition of 2006 reckons with teeth that share the load, "
         "Y_DT, where the virtual contact ratio is above 2.05; by default it does not",
         "a whole number from 1 to 12",
         needs=("editions",), holding=2006, default=None, ge=1, le=12,
-    )  # fmt: skip
+    )
 
     root_refinement: int = key(
         "elements around the fillets and across the core of a tooth over those of a run, which has six around a fillet",
@@ -92,7 +92,7 @@ class StrengthSection(SceneSection):
         too_small="give 1 for the roots of a run, 2 for results",
         too_large="lower it: 8 are 48 elements around a fillet",
         default=2, ge=1, le=8,
-    )  # fmt: skip
+    )
 
     gauges: GaugesSection | None = None
 

@@ -53,21 +53,21 @@ class WearSection(SceneSection):
     tolerance: float = key(
         "largest share of a block's worn volume that may be removed in the wrong place", "a number from 0.001 to 0.5",
         default=0.05, ge=1e-3, le=0.5,
-    )  # fmt: skip
+    )
     blocks: Literal["implicit", "explicit"] = key(
         "whether the contact follows the wear within a block of cycles, or only from block to block",
         '"implicit" or "explicit"', "implicit is stable for any length of block", default="implicit",
-    )  # fmt: skip
+    )
     first_block_cycles: Cycles | None = key(
         "length of the first block of cycles; a hundredth of wear.cycles by default",
         f"a number from {SHORTEST_BLOCK:g} wear.cycles, 1 at least, up to wear.cycles",
         "delete the key for the default", default=None,
-    )  # fmt: skip
+    )
     refresh_um: float | None = key(
         "depth of wear at which the meshes follow the worn flanks and both gears are condensed again; 5e-3 m_n by "
         "default",
         "a number from 0.001 to 1000, in µm", "delete the key for the default", default=None, ge=1e-3, le=1e3,
-    )  # fmt: skip
+    )
 
     @model_validator(mode="after")
     def _something_wears(self) -> Self:

@@ -60,7 +60,7 @@ def fatemi_socie(stress: Floats, shear_modulus: float, yield_stress: float, fact
     angles = plane_angles()
     tried = damage(normals_at(angles))
     best = minimize(lambda at: -float(damage(normals_at(at[None]))[0]), angles[int(np.argmax(tried))],
-                    method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-15})  # fmt: skip
+                    method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-15})
     return float(max(-best.fun, tried.max()))
 
 

@@ -47,11 +47,11 @@ CONTACT_PRESSURE = Criterion(
     "contact_pressure", "contact pressure", places=(SURFACE,), exponent=13.22, exponent_place=SURFACE,
     source="ISO 6336-2, Z_NT of through-hardened and case-hardened steel without any pitting, 1.6 at 1e5 and 1.0 at "
     "5e7 load cycles; on nominal stress with load factors", of_history=False,
-)  # fmt: skip
+)
 ORTHOGONAL_SHEAR = Criterion(
     "orthogonal_shear_range", "range of orthogonal shear stress", exponent=9.19, exponent_place=BELOW,
     source="Lundberg and Palmgren, line contact: c/e with c = 31/3, e = 9/8, at equal depth and stressed volume",
-)  # fmt: skip
+)
 MAXIMUM_SHEAR = Criterion("maximum_shear", "maximum shear stress (Tresca)")
 VON_MISES = Criterion("von_mises", "von Mises")
 DANG_VAN = Criterion("dang_van", "Dang Van")

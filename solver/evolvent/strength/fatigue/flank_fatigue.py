@@ -125,7 +125,7 @@ def _criteria(ratio: float, depth: float, peaks: Floats, material: FatigueMateri
 @lru_cache(maxsize=4096)  # a coarse companion has the same ones again
 def _unit_passage(
     ratio: float, depth: float, material: FatigueMaterial
-) -> tuple[dict[Criterion, float], Floats, Floats]:  # fmt: skip
+) -> tuple[dict[Criterion, float], Floats, Floats]:
     """Below a contact of peak 1: what grows with the peak; amplitude of shear and tension on planes (a,), empty where
     they are not needed."""
     x, nothing = passage(), np.zeros(0)

@@ -39,7 +39,7 @@ def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue])
     """
     own, last = found[-1].gears[Member.PINION], found[-1].friction
     figure = sheet(f"{title}: contact fatigue", f"Dang Van's equivalent shear stress on the pinion, μ = {last:g}; "
-                   "right: criteria below the point with the largest contact pressure", (13.5, 5.0))  # fmt: skip
+                   "right: criteria below the point with the largest contact pressure", (13.5, 5.0))
     over, section, below = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 0.9))
     if len(own.loads.peak):
         scale = Normalize(0.0, float(own.values[DANG_VAN].max()))

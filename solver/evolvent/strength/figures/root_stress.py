@@ -61,7 +61,7 @@ def _formulas(axes: Axes, rows: Sequence[StrengthRow]) -> None:
         else:
             filled = INK if row.method == f"{STANDARD}2019" or word == "Pedrero" else "none"
             axes.plot(row.tooth_rotation_deg, row.stress_MPa, MARKS[word], mfc=filled, mec=INK, ms=5.5,
-                      label=row.method.split(",")[0], ls="none")  # fmt: skip
+                      label=row.method.split(",")[0], ls="none")
 
 
 def _named(axes: Sequence[Axes]) -> tuple[list[object], list[str]]:

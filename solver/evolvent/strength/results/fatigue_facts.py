@@ -76,7 +76,7 @@ def fatigue_facts(
         None if σy is None else largest * np.sqrt(3.0) / σy, None if σy is None else mises / σy,
         float(np.median(differences)) if known else np.nan,
         float(np.quantile(np.abs(differences), 0.9)) if known else np.nan,
-    )  # fmt: skip
+    )
 
 
 def warnings_of(facts: FatigueFacts, found: FrictionFatigue) -> list[str]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH = (
     "fatigue.csv", "fatigue_life.csv", "fatigue_map.csv", "fatigue_depth.csv"
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)

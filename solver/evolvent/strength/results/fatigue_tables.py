@@ -92,7 +92,7 @@ def _flank(pair: GearPair, member: Member, friction: float, own: FlankFatigue) -
         point = (
             member.label, friction, float(diameter[k]), float(loads.height[k]), float(loads.roll_distance[k]),
             float(loads.peak[k]), float(loads.half_width[k]), float(loads.friction[k]), bool(reverses[k]),
-        )  # fmt: skip
+        )
         for criterion, values in own.values.items():
             found = {place: _deepest(own, values[k], depths[k], place) for place in criterion.places}
             nothing = math.nan, math.nan
@@ -118,7 +118,7 @@ def _largest(
         no = math.nan
         return FatigueRow(
             *head, no, criterion.unit, no, no, no, no, no, no, False, False, False, no, no, no, no, no, no, no
-        )  # fmt: skip
+        )
     columns = np.flatnonzero(own.at(place))
     values = own.values[criterion][:, columns]
     k, m = np.unravel_index(int(np.argmax(values)), values.shape)
@@ -132,7 +132,7 @@ def _largest(
         1e3 * float(own.depths_mm[k, columns[m]]), ξ, float(own.loads.peak[k]), each.at_zone_end(ξ), bool(reverses[k]),
         place == BELOW and m in (0, len(columns) - 1), *_point(own, first.gears[member], criterion, place),
         at_point, errors[0], at_points, errors[1],
-    )  # fmt: skip
+    )
 
 
 def _point(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str) -> tuple[float, float, float]:
@@ -146,14 +146,14 @@ def _point(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: 
 
 def _change_percents(
     own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float]:
     at_point, at_points = changes(own, first, criterion, place)
     return 100.0 * (at_point - 1.0), 100.0 * (at_points - 1.0)
 
 
 def _change_errors(
     member: Member, each: FrictionFatigue, criterion: Criterion, place: str, first: FrictionFatigue
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float]:
     """Of both changes, in per cent: how far those of the coarse companion are away."""
     if each.coarse is None or first.coarse is None:
         return math.nan, math.nan

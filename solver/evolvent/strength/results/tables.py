@@ -153,7 +153,7 @@ def _of_point(
         0.5 * gear.reference_diameter + above, 0.0, 30.0, point.share, point.stress / point.share,
         form.form_factor if form_factor is None else form_factor, form.stress_correction_factor, form.notch_parameter,
         others, UNKNOWN, UNKNOWN,
-    )  # fmt: skip
+    )
 
 
 def _of_peak(load: RootLoad, method: str, friction: float, peak: RootPeak, error: float) -> StrengthRow:
@@ -161,7 +161,7 @@ def _of_peak(load: RootLoad, method: str, friction: float, peak: RootPeak, error
         load.member.label, method, friction, peak.stress, error, math.degrees(peak.angle), peak.radius, peak.height,
         math.degrees(peak.tangent_angle), peak.load_share, peak.whole_load, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN,
         peak.mean, peak.amplitude,
-    )  # fmt: skip
+    )
 
 
 def formula_warnings(loads: Sequence[RootLoad]) -> Iterator[str]:

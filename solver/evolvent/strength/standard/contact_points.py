@@ -28,9 +28,9 @@ def contact_points(contact_ratio: float) -> tuple[ContactPoint, ...]:
         return (
             ContactPoint("tip", 0.0, 2), ContactPoint("outer point of single contact", ε - 1.0, 1),
             ContactPoint("inner point of single contact", 1.0, 1), ContactPoint("start of contact", ε, 2),
-        )  # fmt: skip
+        )
     return (
         ContactPoint("tip (a)", 0.0, 3), ContactPoint("outer point of double contact (b)", ε - 2.0, 2),
         ContactPoint("double contact (c)", 1.0, 2), ContactPoint("double contact (d)", ε - 1.0, 2),
         ContactPoint("inner point of double contact (e)", 2.0, 2), ContactPoint("start of contact (f)", ε, 3),
-    )  # fmt: skip
+    )

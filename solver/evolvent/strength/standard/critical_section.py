@@ -59,7 +59,7 @@ def critical_section(gear: VirtualGear, rack: Rack) -> CriticalSection:
     E = (
         math.pi / 4.0 * m - rack.dedendum * math.tan(α) + rack.undercut / math.cos(α)
         - (1.0 - math.sin(α)) * rack.tip_radius / math.cos(α)
-    )  # fmt: skip
+    )
     G = (rack.tip_radius - rack.dedendum) / m + gear.profile_shift
     H = 2.0 / z * (math.pi / 2.0 - E / m) - TANGENT
     θ = _auxiliary_angle(G, H, z)

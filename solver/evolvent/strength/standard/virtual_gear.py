@@ -54,7 +54,7 @@ class VirtualGear:
         return (
             (0.5 * math.pi + shift) / self.teeth
             + involute_function(self.pressure_angle) - involute_function(pressure_angle)
-        )  # fmt: skip
+        )
 
 
 def virtual_gear(gear: GearParameters) -> VirtualGear:

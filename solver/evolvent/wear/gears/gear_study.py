@@ -128,7 +128,7 @@ def checkpoint_of(gears: GearWear, study: StudyState) -> StudyCheckpoint:
     return StudyCheckpoint(
         state.cycles, state.depth, gears.mesh_depth, state.previous, state.next_length, searches, study.rows,
         study.vibrations, vibration,
-    )  # fmt: skip
+    )
 
 
 def _resumed(gears: GearWear, checkpoint: StudyCheckpoint) -> WearState[PitchState]:
@@ -155,4 +155,4 @@ def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:
     return BlockRow(
         state.cycles, block.length, block.error, block.refused, state.evaluation.searched, gears.mesh_updates,
         *deepest, *volumes,
-    )  # fmt: skip
+    )

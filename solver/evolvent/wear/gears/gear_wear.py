@@ -59,7 +59,7 @@ class GearWear:
     def __init__(
         self, model: GearModel, pitch: Pitch, friction: float, law: Archard, comm: MPI.Comm = MPI.COMM_SELF,
         mesh_motion: GearMeshMotion | None = None, operating: OperatingPoint | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Raises InputError unless the positions are equal steps of one pitch, which make up one tooth's passage."""
         angles = np.array(pitch.angles)
         step = 2.0 * np.pi / model.pair.pinion.z / max(len(angles), 1)
@@ -246,7 +246,7 @@ class GearWear:
             rate=rate, areas=self.areas, deformation=np.inf, ripple_decay=self._ripple_decay(rate, positions),
             positions=positions, work=work, shared=tuple(shared), searched=searched, mesh_updates=self.mesh_updates,
             points=tuple(swept.smooth), passage=smooth, operation=operation,
-        )  # fmt: skip
+        )
 
     def _ripple_decay(self, rate: Floats, positions: Sequence[PositionResult]) -> float:
         """Cycles in which a ripple of two nodes along the profile decays to 1/e, 1/((K/H)(πE*/ℓ) s), where the flanks

@@ -45,7 +45,7 @@ class PositionResponse:
     def __init__(
         self, normal: CondensedSystem, state: Equilibrium, points: ContactPoints, separating: Bools,
         full: PositionResponse | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """About a state of a frictionless system. full: the response in which no point separates, from whose matrix
         this one's is computed; None: from the system."""
         self._normal, self._state, self.points, self.separating = normal, state, points, separating

@@ -34,7 +34,7 @@ REFRESH = 5e-3
 def wearing_pair(
     problem: GearProblem, law: Archard, friction: float = 0.0, positions: int = 20, refresh: float | None = None,
     comm: MPI.Comm = MPI.COMM_WORLD, operating: OperatingPoint | None = None,
-) -> GearWear:  # fmt: skip
+) -> GearWear:
     """A gear pair that wears, its gears condensed; a cycle is one revolution of the pinion. Collective.
 
     law: wear coefficients of pinion and wheel. refresh: depth [mm] at which the meshes follow the wear, by default 5e-3

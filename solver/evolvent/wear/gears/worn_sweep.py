@@ -149,6 +149,6 @@ class WornSweep:
 
     def _with_elastic_sliding(
         self, points: Sequence[ContactPoints], pitch: PitchDeflection
-    ) -> list[ContactPoints]:  # fmt: skip
+    ) -> list[ContactPoints]:
         elastic = pitch.elastic_sliding(self.numbers, points)
         return [replace(each, sliding=each.sliding + more) for each, more in zip(points, elastic)]

@@ -48,7 +48,7 @@ def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
         "vibration": np.zeros(0) if vibration is None else np.array([*vibration.state, *vibration.forces]),
         "vibration_torques": np.zeros(0) if vibration is None else np.array(vibration.torques),
         "vibration_searches": np.zeros((0, 4)) if vibration is None else _places(vibration.searches),
-    }  # fmt: skip
+    }
     if checkpoint.vibrations:
         rows = [{"cycles": row.cycles, **asdict(row)} for row in checkpoint.vibrations]  # the cycles first
         archive.files.write_text("vibration.csv", csv_text(rows))
@@ -71,7 +71,7 @@ def read_checkpoint(archive: Archive) -> StudyCheckpoint | None:
         tuple(_row(BlockRow, values) for values in arrays["rows"].tolist()),
         tuple(_row(VibrationRow, values) for values in arrays["vibrations"].tolist()),
         _vibration(arrays),
-    )  # fmt: skip
+    )
 
 
 def _vibration(arrays: Mapping[str, Any]) -> Vibration | None:

@@ -116,7 +116,7 @@ def depth_over_flank(study: WornRun) -> Figure:
         shown = ax.pcolormesh(
             chart.heights, chart.diameters, 1e3 * chart.depth, cmap=PRESSURE_MAP, vmin=0.0, vmax=_deepest(last, gear),
             shading="gouraud",
-        )  # fmt: skip
+        )
         ax.axhline(last.run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
         ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
         ax.set(xlabel="axial position z [mm]", ylabel="diameter [mm]")
@@ -173,7 +173,7 @@ def growth(study: WornRun) -> Figure:
     unit, name = _unit(study)
     for gear in wearing(study):
         style = {"color": (PINION, WHEEL)[gear], "linestyle": ("-", "--")[gear], "marker": ".", "label": GEARS[gear],
-                 "clip_on": False}  # fmt: skip
+                 "clip_on": False}
         x = np.array([0.0, *(row.cycles for row in study.rows)]) / unit
         deepest = [0.0, *(getattr(row, f"deepest_{GEARS[gear]}_um") for row in study.rows)]
         volume = [0.0, *(getattr(row, f"volume_{GEARS[gear]}_mm3") for row in study.rows)]

@@ -115,7 +115,7 @@ class WornPair:
             self.cycles, self._gear(Member.PINION), self._gear(Member.WHEEL), row.max_pressure_MPa,
             row.kink_pressure_MPa, row.transmission_error_peak_to_peak_um, row.mesh_stiffness_N_per_mm_um,
             row.loss_percent, row.balance_error,
-        )  # fmt: skip
+        )
 
     def _gear(self, gear: Member) -> GearReport:
         chart, inner = self.worn[gear], self.inner(gear)
@@ -125,7 +125,7 @@ class WornPair:
         return GearReport(
             1e3 * float(depth[row, column]), float(chart.diameters[row]), float(chart.heights[column]), pitch,
             self.volumes[gear],
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from tests.support.checkout import ROOT
 
 QUICK = CostCase("quick", "a case", "he2022_dynamics.toml", (
     "mesh.level=quick", "sweep.positions=6", "transient.speeds_rpm=[3000]", "dynamics.damping_ratio=0.2",
-))  # fmt: skip
+))
 TWICE = CostRow("A pair", 10.0, 20.0)
 
 

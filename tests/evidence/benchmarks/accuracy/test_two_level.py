@@ -71,6 +71,6 @@ def test_levels_are_compared_with_the_same_cells() -> None:
     assert named == {
         "peak-to-peak transmission error", "mean transmission error", "load sharing, of the load", "peaks",
         "peaks beside face ends",
-    }  # fmt: skip
+    }
     assert all(row.met for row in found if row.what.startswith(("peaks", "load", "mean")))
     assert next(row.figure for row in found if row.what.startswith("mean")) < 1e-3

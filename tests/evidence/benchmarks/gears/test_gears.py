@@ -51,7 +51,7 @@ def test_a_run_is_told_by_its_summary() -> None:
     summary = {
         "timings_s": {**timings, "total": 100.0}, "positions": [{"newton_iterations": n} for n in (6, 10)],
         "frictions": [{}], "dofs": 10, "flank_dofs": 20,
-    }  # fmt: skip
+    }
     row = row_of(case, summary, 300.0)
     assert row.prepare == 45.0
     assert row.iterations == 8.0

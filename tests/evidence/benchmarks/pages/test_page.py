@@ -71,7 +71,7 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
         "profile_levels": [ProfileRow("patches", 1000, 4, 8.0, 1.0, 40)],
         "pitches": [PitchRow("hexahedron", 2, 1, "one mesh", 0.5, 1000, 4, 5.0, 9.0, 14.0, 300.0, 0.01, 0.001),
                     PitchRow("hexahedron", 1, 1, "levels", 0.7, 0, 0, nan, nan, nan, nan, nan, nan, "killed")],
-    }  # fmt: skip
+    }
     for name, own in rows.items():
         write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
     text = write_page(tmp_path).read_text(encoding="utf-8")

@@ -85,7 +85,7 @@ def test_a_parameter_of_a_new_kind_is_refused(added: typer.Typer) -> None:
     ("typer.echo('evolvent: x: found 1', err=True); raise typer.Exit(2)", Verdict.REFUSED),
     ("import time; time.sleep(5.0)", Verdict.HUNG),
     ("", Verdict.ACCEPTED),
-])  # fmt: skip
+])
 def test_verdicts(code: str, verdict: Verdict, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Commands that end in each of the ways there are, one of which sleeps longer than is waited for."""
     app = typer.Typer(add_completion=False)
@@ -109,7 +109,7 @@ def test_words_of_a_command_line() -> None:
 def test_summary_counts_and_names_failures() -> None:
     """Three trials of two commands, one accepted: counted by command, the accepted one named."""
     found = [Outcome("run", "a", Verdict.REFUSED, "", 0.1), Outcome("run", "b", Verdict.ACCEPTED, "", 0.1),
-             Outcome("check", "c", Verdict.REFUSED, "", 0.1)]  # fmt: skip
+             Outcome("check", "c", Verdict.REFUSED, "", 0.1)]
     text = malformed_summary(found)
     assert "| `run` | 2 | 1 |" in text and "| `check` | 1 | 1 |" in text and "**3** trials, **1** not refused" in text
     assert "- `run`, b: accepted" in text

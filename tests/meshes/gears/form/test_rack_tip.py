@@ -23,7 +23,7 @@ def undercut(z: int = 12, helix: float = 0.0) -> GearParameters:
     return GearParameters.from_rack(
         z=z, normal_module=2.0, normal_pressure_angle_deg=20.0, helix_angle_deg=helix, face_width=10.0,
         bore_diameter=8.0,
-    )  # fmt: skip
+    )
 
 
 def cut_by_motion(gear: GearParameters, angle: float) -> float:
@@ -33,7 +33,7 @@ def cut_by_motion(gear: GearParameters, angle: float) -> float:
     ψ = np.linspace(-math.pi, math.pi, 4001)
     outline = np.column_stack([
         -(tip.land + tip.radius * np.cos(ψ)) / cosine, tip.height - tip.radius * np.sin(ψ) + tip.reference_radius
-    ])  # fmt: skip
+    ])
     least = math.inf
     for turn in np.linspace(-0.6, 0.6, 2401):
         shifted = outline + np.array([tip.reference_radius * turn, 0.0])
@@ -55,7 +55,7 @@ GEARS = {
     "protuberance": replace(he_gear(), protuberance_um=60.0),
     "helical protuberance": replace(yang().pinion, protuberance_um=20.0),
     "undercut with protuberance": replace(undercut(14), protuberance_um=20.0),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", GEARS)

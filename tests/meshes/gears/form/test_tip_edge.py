@@ -23,7 +23,7 @@ from tests.support.paper_pairs import he, he_gear
 
 EDGES: list[dict[str, Any]] = [
     {"tip_chamfer_um": 100.0}, {"tip_chamfer_um": 300.0}, {"tip_rounding_um": 100.0}, {"tip_rounding_um": 300.0},
-]  # fmt: skip
+]
 
 
 def off_edge(gear: GearParameters, points: Floats) -> float:

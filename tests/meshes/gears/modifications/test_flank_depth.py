@@ -48,7 +48,7 @@ CASES: dict[str, tuple[dict[str, Any], list[tuple[float, float, float]]]] = {
     "negative twist": (
         {"twist_um": -8.0}, [(10.0, 15.0, 4.0), (20.0, -15.0, 4.0), (10.0, -15.0, 0.0), (20.0, 15.0, 0.0)],
     ),
-}  # fmt: skip
+}
 """Modifications; roll length [mm], height [mm] and depth [µm] of points."""
 
 

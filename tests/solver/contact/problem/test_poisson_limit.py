@@ -42,7 +42,7 @@ def test_small_stabiliser_is_accurate_at_the_edge_of_contact(fine: float) -> Non
     ("ratio", "order", "nitsche", "warns"),
     [(0.45, 2, Nitsche(), False), (0.46, 2, Nitsche(), True), (0.49, 2, SMALL_STABILISER, False),
      (0.49, 1, SMALL_STABILISER, True), (0.495, 2, SMALL_STABILISER, True)],
-)  # fmt: skip
+)
 def test_poissons_ratio_beyond_the_verified_limit_is_warned_of(
     ratio: float, order: int, nitsche: Nitsche, warns: bool
 ) -> None:

@@ -72,7 +72,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Solution], p
     assert sorted(file.name for file in path.parent.iterdir()) == [
         "body_0_0001.vtu", "body_0_0002.vtu", "body_1_0001.vtu", "body_1_0002.vtu",
         "contact_0_0001.vtu", "contact_0_0002.vtu", "series.pvd",
-    ]  # fmt: skip
+    ]
     return solutions, pyvista.get_reader(path)
 
 

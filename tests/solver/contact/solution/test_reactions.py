@@ -34,9 +34,9 @@ def stack(nitsche: Nitsche) -> Problem:
     freedoms = Freedom("y", load=-300.0), Freedom("rz", load=20.0), Freedom("x", displacement=2e-4)
     lid = Rigid("top", freedoms, (1.0, 2.0))
     upper = Body(rectangle(2.0, 1.0, 5, 3, origin=(0.0, 1.0)), Material(70e3, 0.3), loads=(
-        Traction("right", (0.0, -7.0)), Traction("top", (3.0, -4.0))), rigid=lid, name="upper")  # fmt: skip
+        Traction("right", (0.0, -7.0)), Traction("top", (3.0, -4.0))), rigid=lid, name="upper")
     lower = Body(rectangle(2.0, 1.0, 7, 4), supports=(Fixed("bottom", "y"), Fixed("right", "x", 1e-4)), loads=(
-        BodyForce((0.0, -WEIGHT)),), name="lower")  # fmt: skip
+        BodyForce((0.0, -WEIGHT)),), name="lower")
     return Problem((upper, lower), (Contact((0, "bottom"), (1, "top"), 0.3, reach=0.1),), nitsche)
 
 

@@ -33,7 +33,7 @@ def test_products_and_normal_components_are_those_of_the_matrix(k: int) -> None:
 def test_the_whole_matrix_is_made_for_friction_only(friction: float) -> None:
     """A pressed block, solved: with friction the compliance is a matrix; without, no matrix of it has been made."""
     upper = Body(rectangle(1.0, 1.0, 2, 2, origin=(0.0, 1.0)), supports=(Fixed("left", "x"),),
-                 loads=(Traction("top", (0.0, -50.0)),))  # fmt: skip
+                 loads=(Traction("top", (0.0, -50.0)),))
     lower = Body(rectangle(1.0, 1.0, 3, 3), supports=(Fixed("bottom"),))
     problem = Problem((upper, lower), (Contact((0, "bottom"), (1, "top"), friction=friction),))
     system = StepSystem(problem, condense_bodies(problem), Step())

@@ -99,7 +99,7 @@ def test_two_free_bodies_keep_their_momentum() -> None:
     given = np.array([
         [body.axes.rigid_mass[:2] @ velocity for body, velocity in zip(run.bodies, moment.velocities)]
         for moment in moments
-    ])  # fmt: skip  # (steps, bodies, directions)
+    ])  # (steps, bodies, directions)
     total = given.sum(axis=1)
     exchanged = np.ptp(given[:, 1, 1])
     assert exchanged > 0.5 * abs(total[0, 1])
@@ -249,7 +249,7 @@ def test_a_step_that_cannot_keep_the_energy_is_an_error() -> None:
     ]
     contacts = Contact((0, "bottom"), (1, "top"), reach=1.0), Contact((0, "top"), (2, "bottom"), reach=1.0)
     run = Transient(Problem((bar, *walls), contacts), TransientSettings(h, 8, conserving=True),
-                    InitialState(velocities={0: (0.0, -SPEED)}))  # fmt: skip
+                    InitialState(velocities={0: (0.0, -SPEED)}))
     with pytest.raises(EnergyNotKept, match="shorter time step"):
         list(run.run(100))
     reached = run.time

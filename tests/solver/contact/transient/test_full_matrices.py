@@ -26,7 +26,7 @@ def hammer() -> Problem:
     upper = Body(
         rectangle(3.0, 2.0, 3, 2, origin=(0.5, 2.0005)), loads=(Traction("left", (0.0, -20.0)),),
         rigid=Rigid("top", (Freedom("y", load=-50.0),)), name="hammer",
-    )  # fmt: skip
+    )
     lower = Body(rectangle(4.0, 2.0, 5, 2), supports=(Fixed("bottom"),), name="anvil")
     return Problem((upper, lower), (Contact((0, "bottom"), (1, "top"), reach=0.5),))
 
@@ -85,7 +85,7 @@ def by_full_matrices(problem: Problem) -> tuple[Floats, Floats]:
 def by_modes(problem: Problem, modes: int) -> tuple[Floats, Floats]:
     """The same by `Transient`. Heights are those of the lid, not of the mean axes."""
     run = Transient(problem, TransientSettings(H, modes, spectral_radius=RADIUS),
-                    InitialState(velocities={0: (0.0, DROP)}))  # fmt: skip
+                    InitialState(velocities={0: (0.0, DROP)}))
     forces, heights = [], []
     top = np.unique(problem.bodies[0].mesh.facets["top"])
     for moment in run.run(STEPS):

@@ -51,7 +51,7 @@ def shaken(friction: float = 0.3) -> Problem:
     """A block, pressed by a traction and drawn to the side by its lid, on one that is held."""
     lid = Rigid("top", (Freedom("y", load=-300.0), Freedom("x", load=60.0)))
     upper = Body(rectangle(2.0, 2.0, 2, 2, origin=(0.5, 1.0)), loads=(Traction("left", (5.0, 0.0)),), rigid=lid,
-                 name="slider")  # fmt: skip
+                 name="slider")
     base = Body(rectangle(3.0, 1.0, 3, 1), supports=(Fixed("bottom"),), name="base")
     return Problem((upper, base), (Contact((0, "bottom"), (1, "top"), friction=friction),))
 
@@ -74,7 +74,7 @@ def figures(moment: Moment) -> dict[str, Floats]:
         "s": np.array([moment.time, moment.length]), "1": np.array([moment.error]),
         "N mm": np.array([moment.work, moment.energy.total]), "MPa": contact.traction,
         "mm": np.concatenate(lengths), "mm/s": np.concatenate(moment.velocities),
-    }  # fmt: skip
+    }
 
 
 def difference(one: Floats, other: Floats) -> float:

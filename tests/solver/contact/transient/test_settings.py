@@ -65,7 +65,7 @@ def test_velocities_that_are_none(velocities: Any) -> None:
     [({2: (0.0, 1.0)}, "body indices below 2"), ({0: (0.0, 1.0, 0.0)}, "2 components"),
      ({0: (1.0, -1.0)}, r"body 0: wanted one along its free rigid motions, y, found \(1\.0, -1\.0\); give its Rigid"),
      ({1: (0.0, 1.0)}, r"body 1: wanted none, as the body is held, found \(0\.0, 1\.0\)")],
-)  # fmt: skip
+)
 def test_velocities_that_do_not_fit_the_problem(velocities: dict[int, tuple[float, ...]], named: str) -> None:
     """No such body; three components in 2D; along a motion that the lid has not; of a body that is held."""
     with pytest.raises(InputError, match=named):

@@ -19,7 +19,7 @@ from evolvent import (
     Transient,
     TransientSettings,
     sweep,
-)  # fmt: skip
+)
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import rectangle
 

@@ -114,7 +114,7 @@ def test_flux_is_followed_in_the_fine_cells_about_the_loads() -> None:
     def response(flux_reach: float) -> Floats:
         nitsche = patch_response(
             body, patch, ("bottom",), SAFETY, lambda points: np.abs(points[:, 0] - middle) < 0.51, flux_reach
-        ).nitsche  # fmt: skip
+        ).nitsche
         assert nitsche is not None
         return nitsche
 

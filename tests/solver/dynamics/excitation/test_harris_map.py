@@ -11,7 +11,7 @@ from tests.support.gear_cases import model_of, spur_scene
 RELIEF = [
     f"{gear}.{key}" for gear in ("pinion", "wheel")
     for key in ("tip_relief_um=5.2", "tip_relief_start_diameter_mm=150.756")
-]  # fmt: skip
+]
 """Long: linear from the end of single contact on."""
 
 

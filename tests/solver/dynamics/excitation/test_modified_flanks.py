@@ -47,7 +47,7 @@ def error(one: GearPair) -> Floats:
     (("pinion.profile_slope_um=-1", "wheel.profile_slope_um=-1"), 1.0),
     (("pinion.helix_slope_um=1", "wheel.helix_slope_um=-1"), 1.0),
     (("pinion.twist_um=1", "wheel.twist_um=1"), 0.5),
-])  # fmt: skip
+])
 def test_modifications_that_cancel_leave_a_rotation(settings: tuple[str, ...], constant: float, helix: float) -> None:
     """Exact: tip meets root, so that equal profile slopes of both gears are those of another pressure angle, opposite
     helix slopes those of another helix angle, and equal twists cancel. What is missing is even: a rotation."""

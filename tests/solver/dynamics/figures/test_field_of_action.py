@@ -91,7 +91,7 @@ def test_the_foot_names_what_is_drawn() -> None:
         assert ("blue" in foot) == each.is_above
     loud = replace(drawn, pressures=replace(drawn.pressures, moving=replace(still, cuts=tuple(
         replace(cut, largest=np.full(len(cut.largest), 1e6), peak=np.full(len(cut.largest), np.nan))
-        for cut in still.cuts))))  # fmt: skip
+        for cut in still.cuts))))
     assert loud.is_above and "blue" in words(loud.figure(0))
 
 

@@ -114,7 +114,7 @@ def test_nothing_divided_is_the_equal_run(friction: float) -> None:
         assert astuple(one.steps) == astuple(other.steps)
         assert (one.time, one.mesh_force, one.rate) == (other.time, other.mesh_force, other.rate)
         np.testing.assert_equal(astuple(one.residuals) + astuple(one.energies),
-                                astuple(other.residuals) + astuple(other.energies))  # fmt: skip
+                                astuple(other.residuals) + astuple(other.energies))
         for a, b in zip(astuple(one.state.motion), astuple(other.state.motion)):
             assert np.array_equal(a, b)
 

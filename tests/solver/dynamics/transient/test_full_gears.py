@@ -73,7 +73,7 @@ def eighty_nodes(problem: GearProblem, member: Member) -> MeshData:
     """A sector so coarse that all modes of the ring can be computed."""
     return gear_mesh(problem, member, lambda usual: replace(
         usual, profile_elements=6, neck_elements=2, fillet_elements=4, back_elements=4, core_elements=2, rim_elements=2
-    ))  # fmt: skip
+    ))
 
 
 @cache

@@ -107,7 +107,7 @@ def test_teeth_are_renumbered_after_a_pitch() -> None:
     once = [moment.mesh_force for moment in fast.run(start, 1)]
     pair, motion = fast.pair, start.motion
     rounded = type(motion)(*(pair.earlier(pair.earlier(each, 1), -1) for each in (
-        motion.position, motion.velocity, motion.acceleration)))  # fmt: skip
+        motion.position, motion.velocity, motion.acceleration)))
     again = [moment.mesh_force for moment in fast.run(replace(start, motion=rounded), 1)]
     assert again == pytest.approx(once, rel=1e-9)
 
@@ -118,7 +118,7 @@ def test_teeth_are_renumbered_after_a_pitch() -> None:
         (True, True, True, True), (True, True, False, True), (False, False, True, False),
         (False, False, False, False), (False, True, True, False), (False, True, False, False),
     ],
-)  # fmt: skip
+)
 def test_damping_is_that_of_the_end(damped_touches: bool, free_touches: bool, guess: bool, taken: bool) -> None:
     """Problem: whether flanks touch at the end of a step with the damping of the mesh and without, and what is tried
     first. Exact: the damped end if flanks touch there, else the free one, also where only damping would keep them

@@ -130,7 +130,7 @@ def broken(part: str, balance: StepBalance) -> StepBalance:
     ("position", "momentum"), ("velocity", "motion"), ("acceleration", "momentum"),
     ("torque of the pinion", "momentum"), ("torque of the pinion", "reaction"), ("forces on modes", "momentum"),
     ("forces on the wheel", "reaction"), ("moment of the wheel's forces", "moment"),
-])  # fmt: skip
+])
 def test_a_millionth_is_seen(balanced: Balanced, part: str, missed: str) -> None:
     """A state or a force that is wrong by 1e-6, a moment by 2 %: the balance that it enters is off, and refused."""
     balance, before = balanced

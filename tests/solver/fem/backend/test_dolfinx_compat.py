@@ -23,11 +23,11 @@ SIZE = (2.0, 3.0, 5.0)
 ELEMENT_TYPE = {
     ("triangle", 1): 2, ("triangle", 2): 9, ("quadrilateral", 1): 3, ("quadrilateral", 2): 10,
     ("tetrahedron", 1): 4, ("tetrahedron", 2): 11, ("hexahedron", 1): 5, ("hexahedron", 2): 12,
-}  # fmt: skip
+}
 FACET_TYPE = {
     ("triangle", 1): 1, ("triangle", 2): 8, ("quadrilateral", 1): 1, ("quadrilateral", 2): 8,
     ("tetrahedron", 1): 2, ("tetrahedron", 2): 9, ("hexahedron", 1): 3, ("hexahedron", 2): 10,
-}  # fmt: skip
+}
 Block = tuple[str, int, Floats, Ints, Ints]
 """shape, order, points, cells, facets at x = 0."""
 

@@ -20,7 +20,7 @@ HOMELESS = "import pwd\ndef unknown(number): raise KeyError(number)\npwd.getpwui
 def compiled(folder: Path, program: str = FORM, **environment: str) -> subprocess.CompletedProcess[str]:
     """A program that compiles a form in an empty cache, started in a folder; an empty value takes a variable away."""
     wanted = {**os.environ, "PYTHONPATH": PYTHONPATH, "XDG_CACHE_HOME": str(folder / "cache"), "XDG_CONFIG_HOME": "",
-              **environment}  # fmt: skip
+              **environment}
     variables = {name: value for name, value in wanted.items() if value}
     command = [sys.executable, "-c", program]
     return subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True, timeout=120, check=False)

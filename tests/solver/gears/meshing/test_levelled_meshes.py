@@ -59,7 +59,7 @@ def test_long_cells_have_no_levels_by_default() -> None:
     rack: dict[str, Any] = {"normal_module": 3.0, "normal_pressure_angle_deg": 20.0, "face_width": 25.0}
     pinion = GearParameters.from_rack(
         z=25, bore_diameter=30.0, modifications=Modifications(lead_crowning_um=8.0), **rack
-    )  # fmt: skip
+    )
     wheel = GearParameters.from_rack(z=60, bore_diameter=60.0, **rack)
     spur = GearProblem(GearPair(pinion, wheel, 127.5), 150e3)
     assert is_large(spur) and has_long_cells(spur) and not is_two_level(spur)
@@ -73,7 +73,7 @@ def test_levels_can_be_asked_for_and_refused() -> None:
     assert not is_two_level(problem(MeshSettings("fine", two_level=False)))
     gear = GearParameters.from_rack(
         z=30, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0, bore_diameter=40.0
-    )  # fmt: skip
+    )
     spur = GearProblem(GearPair(gear, gear, 90.0), 100e3, mesh=MeshSettings("fine", two_level=True))
     assert spur.is_plane and not is_two_level(spur)
 

@@ -88,7 +88,7 @@ def test_bearing_share_of_relieved_tips_at_a_light_load() -> None:
     (("load.torque_Nm=5", "pinion.root_relief_um=50"), "pinion.root_relief_um = 50", 81),
     (("load.torque_Nm=5", "pair.misalignment_um=3", "wheel.lead_crowning_um=2"),
      "pair.misalignment_um = 3 and wheel.lead_crowning_um = 2", 48),
-])  # fmt: skip
+])
 def test_warning_names_the_modification_that_keeps_flanks_apart(
     settings: tuple[str, ...], key: str, share: int
 ) -> None:
@@ -113,7 +113,7 @@ def test_usual_modifications_are_not_warned_of() -> None:
     (("wheel.root_relief_um=10",), "No tip relief on the wheel: tip edges may bear"),
     (("wheel.profile_crowning_um=10",), ""),
     (("wheel.profile_slope_um=10",), "No tip relief: tip edges may bear"),
-])  # fmt: skip
+])
 def test_missing_tip_relief_is_warned_of(settings: tuple[str, ...], words: str) -> None:
     """He's pair, whose transmission error in single contact is 8.50 µm (quick): `check` names what is not relieved."""
     text = overview(load_scene("demos/he2022.toml", settings))

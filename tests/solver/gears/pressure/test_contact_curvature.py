@@ -26,14 +26,14 @@ def section_of_yang() -> GearPair:
     section: dict[str, Any] = {
         "normal_module": 2.1 / math.cos(β), "helix_angle_deg": 0.0, "face_width": 16.9, "rack_tip_radius": 0.75,
         "normal_pressure_angle_deg": math.degrees(math.atan(math.tan(math.radians(17.5)) / math.cos(β))),
-    }  # fmt: skip
+    }
     pinion = GearParameters(
         z=17, profile_shift=0.3721 * math.cos(β), tip_diameter=47.8, root_diameter=35.66, bore_diameter=18.0, **section
-    )  # fmt: skip
+    )
     wheel = GearParameters(
         z=60, profile_shift=-0.0994 * math.cos(β), tip_diameter=149.3, root_diameter=136.93, bore_diameter=70.0,
         **section,
-    )  # fmt: skip
+    )
     return GearPair(pinion, wheel, 93.0)
 
 

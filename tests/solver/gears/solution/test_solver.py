@@ -85,7 +85,7 @@ def test_figures_of_the_page_are_those_of_its_program() -> None:
     pitch = names["pitch"]
     assert stated.groups() == (
         f"{1e3 * pitch.transmission_error_peak_to_peak:.2f}", f"{100 * pitch.loss_ratio:.2f}",
-    )  # fmt: skip
+    )
 
 
 def test_pitch_figures_are_those_of_the_whole_gears(gears: GearModel) -> None:
@@ -214,7 +214,7 @@ WRONG = {
     "unknown level": (lambda: MeshSettings("rough"), "mesh level: wanted 'quick' or 'standard' or 'fine'"),  # type: ignore[arg-type]
     "order 3": (lambda: MeshSettings(order=3), "mesh order: wanted 1 or 2"),  # type: ignore[arg-type]
     "no elements": (lambda: MeshSettings(elements_per_contact_width=0.0), "elements_per_contact_width: wanted"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", WRONG)

@@ -101,7 +101,7 @@ def test_a_converged_search_of_deflected_flanks_stays(bent: GearModel) -> None:
         for contact, state in (
             (shared.contact, shared.smooth), (first.contact, first.equilibrium), (again.contact, again.equilibrium),
         )
-    )  # fmt: skip
+    )
     assert abs(twice - once) < 0.01 * abs(once - before)
     assert abs(float(again.equilibrium.motion[0])) < 0.5 * abs(float(first.equilibrium.motion[0]))
 

@@ -31,7 +31,7 @@ def correction() -> StripCorrection:
     resolution = SectorResolution(
         profile_elements=24, face_elements=6, end_size_ratio=1.0, flank_start_diameter=start,
         layer_depths=(0.2, 0.25, 0.285),
-    )  # fmt: skip
+    )
     body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (2, 1, 1)))
     flank = Towers(body, gear.base_radius, gear.twist, HELD, 2.0)
     return flank.correction({patch.block: flank.response(patch).contact for patch in flank.patches()})

@@ -23,7 +23,7 @@ SETTINGS = (
     "--level", "quick", "--quiet", "--set", "contact.friction=[0.1, 0.3]", "--set", "sweep.positions=4", "--set",
     "output.pictures=false", "--set", "output.animation=false",
     "--set", "output.fields=false",
-)  # fmt: skip
+)
 
 
 def arguments(out: Path, *more: str) -> tuple[str, ...]:

@@ -147,7 +147,7 @@ def test_manifest_names_no_file_outside_its_folder(tmp_path: Path) -> None:
     ['{"path": "/etc/passwd", "sha256": "DIGEST"}', '{"path": "' + "x" * 5000 + '", "sha256": "a"}',
      '{"path": "a\\u0000b", "sha256": "a"}', '{"path": 5, "sha256": []}', '{"path": "a", "sha256": []}', "[]", "5",
      "[" * 100_000, '{"a":' * 100_000],
-)  # fmt: skip
+)
 def test_forged_lines_of_the_manifest_are_skipped(line: str, folder: RunFolder) -> None:
     """Absolute paths with the digest of their file, paths that no file can have, other types, nested without end."""
     before = folder.written_files()

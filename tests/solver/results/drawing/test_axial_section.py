@@ -24,7 +24,7 @@ def area(outline: Floats) -> float:
 @pytest.mark.parametrize(("keys", "exact", "held"), [
     ((), 20.0 * 36.25, (-10.0, 10.0)), (WEB, 20.0 * 10.0 + 6.0 * 26.25, (-1.0, 5.0)),
     ((*WEB, *HUB), 20.0 * 10.0 + 6.0 * 16.25 + 20.0 * 10.0, (-4.0, 4.0)),
-])  # fmt: skip
+])
 def test_outline_has_the_area_of_rim_web_and_hub(
     keys: tuple[str, ...], exact: float, held: tuple[float, float]
 ) -> None:

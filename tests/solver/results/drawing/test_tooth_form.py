@@ -17,7 +17,7 @@ from tests.support.scene_texts import HE
 
 FORM = (
     "pinion.tooth_thickness_allowance_um=-120", "pinion.tip_rounding_um=400", "wheel.tip_chamfer_um=300",
-)  # fmt: skip
+)
 
 
 def test_outline_reaches_from_root_to_tip() -> None:

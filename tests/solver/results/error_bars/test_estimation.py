@@ -45,7 +45,7 @@ from tests.support.running.processes import BROKEN_RUN, Run
 from tests.support.synthetic_run import synthetic_run
 
 SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4",
-         "output.error_bars=true")  # fmt: skip
+         "output.error_bars=true")
 """He's pair, a second or so."""
 PLANE_FIGURES = tuple(name for name in FIGURES if name != "face_load_factor")
 """Figures of a pair in plane strain that are not known beforehand."""

@@ -41,7 +41,7 @@ def test_recovered_flank_displacement_is_that_of_the_compliance(case: Case) -> N
         result = position.results[0]
         for gear, rows, forces in (
             (0, result.pinion_rows, result.pinion_forces), (1, result.wheel_rows, result.wheel_forces),
-        ):  # fmt: skip
+        ):
             body, pitch = model.bodies[gear], 2.0 * np.pi / model.bodies[gear].gear.z
             parts = sector_parts(sector_body(body.mesh, body.material, body.member), body.flank, body.traction, pitch)
             assert len(deformation.gears[gear].teeth(k)) >= 1
@@ -84,7 +84,7 @@ def test_forces_on_the_gears_balance_the_torques(case: Case) -> None:
     for result in (position.results[0] for position in swept):
         for gear, rows, forces in (
             (0, result.pinion_rows, result.pinion_forces), (1, result.wheel_rows, result.wheel_forces),
-        ):  # fmt: skip
+        ):
             body = model.bodies[gear]
             angles = rows[:, 0] * 2.0 * np.pi / body.gear.z
             x = np.array([turn(a, 2) @ p[:2] for a, p in zip(angles, body.flank.points[rows[:, 1]])])

@@ -118,7 +118,7 @@ def test_traction_balances_the_torque(run: RunData) -> None:
     points = np.concatenate([
         run.flank.points[result.node[result.tooth == i]] @ result.stand.rotation(Member.PINION, 3, i).T
         for i in np.unique(result.tooth)
-    ])  # fmt: skip
+    ])
     moment = np.cross(points, -vectors * result.weights[:, None])[:, 2].sum()
     assert moment == pytest.approx(-250e3, rel=0.04)
 

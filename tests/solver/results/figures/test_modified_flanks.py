@@ -20,7 +20,7 @@ NAME = "13_flank_modifications"
 MODIFIED = (
     "pinion.tip_relief_um=8", "pinion.helix_slope_um=-4", "pinion.twist_um=6", "wheel.root_relief_um=5",
     "wheel.end_relief_um=6", "pair.misalignment_um=5",
-)  # fmt: skip
+)
 
 
 @pytest.fixture(scope="module")

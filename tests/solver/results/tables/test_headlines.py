@@ -14,7 +14,7 @@ def test_figures_stand_with_their_error_bars_and_unknown_ones_are_left_out(tmp_p
     """Two coefficients: one with error bars, which are rounded up, one without; what is null is not printed, nor is the
     face load factor of an even load."""
     figures = {"max_pressure_MPa": 1318.4, "transmission_error_peak_to_peak_um": 3.352, "loss_percent": 0.834,
-               "face_load_factor": 1.2}  # fmt: skip
+               "face_load_factor": 1.2}
     bars = {"max_pressure_MPa": 88.2, "transmission_error_peak_to_peak_um": 0.104, "loss_percent": 0.0}
     rows = [
         {"friction": 0.1, **figures, "mesh_stiffness_N_per_mm_um": 12.61, "estimated_error": bars},

@@ -21,7 +21,7 @@ KEYS = {"scene", "versions", "ranks", "dofs", "cells", "mesh", "skipped", "timin
 POSITION_KEYS = {
     "pinion_angle_deg", "friction", "torque_pinion_Nm", "torque_gear_Nm", "transmission_error_um", "max_pressure_MPa",
     "teeth", "newton_iterations", "balance_error", "seconds",
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")

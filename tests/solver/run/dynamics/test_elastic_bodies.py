@@ -28,7 +28,7 @@ def scene(*settings: str) -> Scene:
         *QUIET, "mesh.level=quick", "mesh.order=1", "sweep.positions=40", "contact.friction=[0.0]",
         "dynamics.backlash_um=200", "dynamics.torque_percents=[10,25,50,75,100,150,200]", "dynamics.speeds=2",
         f"dynamics.histories_rpm={speeds}", f"transient.speeds_rpm={speeds}", "transient.mesh_periods=100", *settings,
-    ])  # fmt: skip
+    ])
 
 
 def peak_to_peak(folder: Path) -> list[float]:

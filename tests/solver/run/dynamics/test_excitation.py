@@ -86,7 +86,7 @@ def test_error_bars_come_from_a_coarse_companion(out: Path, tmp_path: Path) -> N
     with Progress(hidden=True) as progress:
         coarse = loaded_pitch(loads, angles, companion_mesh, MPI.COMM_SELF, progress)
     for name, factor, values in (("transmission_error_um", 1e3, coarse.errors),
-                                 ("tangent_stiffness_N_per_um", 1e-3, coarse.stiffness)):  # fmt: skip
+                                 ("tangent_stiffness_N_per_um", 1e-3, coarse.stiffness)):
         found, bars = column(lines, name), column(lines, f"{name}_error")
         assert found == pytest.approx(column(plain, name), rel=1e-8)
         assert (bars >= 0.5 * np.abs(found - factor * values.T.ravel()) - 1e-6).all()

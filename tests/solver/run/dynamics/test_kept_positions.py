@@ -46,7 +46,7 @@ def test_what_was_written_is_read(tmp_path: Path) -> None:
         archive(numbers=np.array(["a"]), figures=np.ones((1, 1, 2))),
         archive(numbers=np.arange(1), figures=np.array([[["a", "b"]]])),
     ],
-)  # fmt: skip
+)
 def test_forged_positions_are_refused(tmp_path: Path, content: bytes) -> None:
     """Archives that are cut off, damaged, no archives, or hold other arrays: an error with the path, nothing else."""
     RunFolder(tmp_path).write(KEPT, content)

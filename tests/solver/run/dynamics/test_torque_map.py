@@ -32,7 +32,7 @@ SPEEDS = np.linspace(2000.0, 6000.0, 15)
 SETTINGS = (
     "output.pictures=true", "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]",
     "dynamics.speeds=30", "dynamics.map_speeds=30", "dynamics.speed_rpm=[1700,7000]", "dynamics.map_percents=[100,40]",
-)  # fmt: skip
+)
 
 
 def scene(*settings: str) -> Scene:
@@ -65,7 +65,7 @@ def test_a_linear_mesh_answers_in_proportion_to_the_load(mesh: MeshModel) -> Non
     over = {name: np.array([getattr(row, name) for row in found.rows]).reshape(3, -1) for name in (
         "torque_Nm", "elastic_equivalent_amplitude_um", "largest_force_N", "dynamic_factor", "natural_speed_rpm",
         "speed_rpm",
-    )}  # fmt: skip
+    )}
     for name in ("torque_Nm", "elastic_equivalent_amplitude_um", "largest_force_N"):
         assert over[name][1] == pytest.approx(2.0 * over[name][0], rel=1e-7)
         assert over[name][2] == pytest.approx(4.0 * over[name][0], rel=1e-7)

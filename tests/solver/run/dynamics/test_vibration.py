@@ -30,7 +30,7 @@ SETTINGS = (
     "output.pictures=true", "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]",
     "dynamics.speeds=60", "dynamics.speed_rpm=[1700,7000]", "dynamics.base_pitch_deviation_um=5",
     "dynamics.profile_deviation_um=4",
-)  # fmt: skip
+)
 
 
 def scene(*settings: str) -> Scene:

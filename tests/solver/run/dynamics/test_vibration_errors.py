@@ -131,7 +131,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     settings = (
         "sweep.positions=12", "dynamics.torque_percents=[50,100,200]", "dynamics.speeds=12",
         "dynamics.speed_rpm=[2600,7000]",
-    )  # fmt: skip
+    )
     words = [word for setting in settings for word in ("--set", setting)]
     scene = str(ROOT / "demos/he2022_dynamics.toml")
     assert main(["dynamics", scene, "--level", "quick", "--out", str(folder), "--quiet", *words]) == 0
@@ -152,7 +152,7 @@ def test_a_run_writes_its_bars(out: Path) -> None:
         (mean,) = {
             float(line["mean_error"]) for line in csv.DictReader(stream)
             if line["quantity"] == "tangent_stiffness_N_per_um" and line["torque_Nm"] == "170"
-        }  # fmt: skip
+        }
     assert known["mean_stiffness_N_per_um_error"] == pytest.approx(mean, rel=1e-7)
     share = known["mean_stiffness_N_per_um_error"] / known["mean_stiffness_N_per_um"]
     assert known["natural_speed_rpm_error"] == pytest.approx(0.5 * share * known["natural_speed_rpm"], rel=1e-9)

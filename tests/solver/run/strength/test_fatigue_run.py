@@ -21,7 +21,7 @@ SETTINGS = (
     "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=8", "output.animation=false",
     "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=1600",
     "fatigue.depths=[0,0.02,0.05,0.1,0.3,0.5,0.8,1.2]",
-)  # fmt: skip
+)
 
 
 def scene(*settings: str) -> Scene:
@@ -68,7 +68,7 @@ def test_what_a_line_contact_has(out: Path) -> None:
                 ("orthogonal_shear_range", "below"), ("maximum_shear", "below"), ("tension", "surface"),
                 ("orthogonal_shear_range", "surface"),
             )
-        }  # fmt: skip
+        }
         assert value["orthogonal_shear_range", "below"] == pytest.approx(0.5 * p0, rel=1e-3)
         assert 0.295 * p0 < value["maximum_shear", "below"] < 0.3003 * 1.04 * p0
         assert value["tension", "surface"] == pytest.approx(2.0 * friction * p0, rel=1e-3)
@@ -131,7 +131,7 @@ def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:
     alone = scene("contact.friction=0.1", "output.error_bars=false", "output.pictures=false")
     assert len(run_fatigue(alone, tmp_path, quiet=True)) == 1
     assert sorted(path.name for path in tmp_path.glob("fatigue*.csv")) == [
-        "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv"]  # fmt: skip
+        "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv"]
 
 
 def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
@@ -154,7 +154,7 @@ def test_sections_that_are_refused(setting: str) -> None:
     ("depths", "remedy"),
     [("0.01,0.02,0.05,0.1,1", "add 0, at which"), ("0,0.2,0.5,0.8,1", "add 0.02, 0.05, 0.1, at which"),
      ("0,0.02,0.05,0.1,0.5", "go down to 1 or deeper"), ("0,0.02,0.1,0.05,1", "let them ascend")],
-)  # fmt: skip
+)
 def test_depths_that_tables_lack_are_named(depths: str, remedy: str) -> None:
     """A list without the depths of fatigue.csv, too shallow, or not ascending: the remedy says what to write."""
     with pytest.raises(SceneError) as refused:

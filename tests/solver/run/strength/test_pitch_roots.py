@@ -19,7 +19,7 @@ WIDTH = 60.0  # mm, nine times the tooth's height: the ends, which are free, are
 SETTINGS = (
     f"pinion.face_width_mm={WIDTH}", f"wheel.face_width_mm={WIDTH}", f"load.torque_Nm={20.0 * WIDTH}",
     "contact.friction=0", "mesh.level=quick", "sweep.positions=2",
-)  # fmt: skip
+)
 
 
 def strains(*settings: str) -> Floats:

@@ -24,7 +24,7 @@ from tests.support.running.processes import Run, on_ranks
 GAUGE = (
     'strength.gauges.gear=["pinion"]', 'strength.gauges.side=["loaded"]', "strength.gauges.angle_deg=[45.0]",
     "strength.gauges.height_mm=[0.0]", "strength.gauges.length_mm=[0.02]",
-)  # fmt: skip
+)
 SETTINGS = "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=12", "output.animation=false"
 
 

@@ -25,7 +25,7 @@ def tasks(tmp_path: Path) -> list[SceneTask]:
     """Three checks."""
     scenes = scenes_of(tmp_path, TORQUES)
     return [SceneTask(each.name, scene_folder(tmp_path, each.name), "check", each.scene) for each in scenes
-            if each.scene is not None]  # fmt: skip
+            if each.scene is not None]
 
 
 @pytest.fixture
@@ -86,7 +86,7 @@ def test_a_scene_that_kills_its_workers(
     found = {record.name: record for record in workers.finished(own(tasks))}
     assert [found[task.name].status for task in tasks] == ["failed", "done", "done"]
     assert found[tasks[0].name].reason.startswith("the worker process died each time that it computed this scene, at "
-                                                  "last by SIGKILL")  # fmt: skip
+                                                  "last by SIGKILL")
 
 
 def test_no_more_workers_than_scenes(tasks: list[SceneTask], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -67,7 +67,7 @@ def test_table_has_a_row_a_scene(tmp_path: Path, computed: list[str]) -> None:
     assert all((tmp_path / "out" / row["folder"] / "check.txt").is_file() for row in rows)
     assert {path.name for path in (tmp_path / "out/pictures").iterdir()} == {
         "curves.png", "curves_MPa.png", "curves_mm.png"
-    }  # fmt: skip
+    }
 
 
 def test_scenes_that_are_there_are_not_computed_again(tmp_path: Path, computed: list[str]) -> None:
@@ -231,7 +231,7 @@ def forged() -> list[bytes]:
     """Contents that no study writes."""
     values = {"name": "?", "compute": 5, "status": "done", "reason": {}, "warnings": "abc", "seconds": "x"}
     return [b"", b"\0" * 50, bytes(range(256)), b"[]", b"5", b"null", b"NaN", b"[" * 100_000, b'{"a":' * 100_000,
-            b"1" * 5000, json.dumps(values).encode(), b'{"names": 5}']  # fmt: skip
+            b"1" * 5000, json.dumps(values).encode(), b'{"names": 5}']
 
 
 @pytest.mark.parametrize("content", forged())

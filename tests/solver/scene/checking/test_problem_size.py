@@ -75,7 +75,7 @@ MEASURED = [
       for elements, megabytes in ((1, 1127), (1.4, 2255), (2, 3844), (2.6, 8420), (3.2, 17063), (3.5, 22401))),
     (yang("mesh.level=quick", "skip.off=coarse-body"), 6481),
     (spur_scene("mesh.level=quick", "skip.off=plane"), 1917),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("scene", "mebibytes"), MEASURED)
@@ -129,7 +129,7 @@ TETRAHEDRA, ELEMENTS = "mesh.shape=tetrahedron", "mesh.elements_per_contact_widt
         (["mesh.level=quick", "skip.off=one-sector"], 8e3, "mesh.level", "take one-sector out of skip.off (--no-skip)"),
         (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 3.277 N·m on --level quick does"),
     ],
-)  # fmt: skip
+)
 def test_remedy_names_the_finest_mesh_that_fits(
     settings: list[str], megabytes: float, key: str, remedy: str, machine: Callable[[float], None]
 ) -> None:
@@ -148,7 +148,7 @@ def test_remedy_names_the_number_of_elements_that_fits(machine: Callable[[float]
     assert problem is not None
     count = float(problem.remedy.split("elements_per_contact_width=")[1].split()[0])
     needed = [memory_megabytes(yang("mesh.level=quick", f"mesh.elements_per_contact_width={n}")) for n in
-              (count, count + 0.1)]  # fmt: skip
+              (count, count + 0.1)]
     assert needed[0] <= 2e3 < needed[1]
 
 
@@ -195,7 +195,7 @@ def test_remedy_of_a_load_list_names_the_lightest_load_that_fits(machine: Callab
     assert problem is not None and "--percent" in problem.remedy
     lightest = float(problem.remedy.split("about ")[1].split()[0])
     wanted = [memory_megabytes(yang(*listed, f"load.mesh_torques_Nm=[{least}, 250]")) for least in
-              (lightest, 0.5 * lightest)]  # fmt: skip
+              (lightest, 0.5 * lightest)]
     assert wanted[0] <= 10e3 < wanted[1]
 
 
@@ -203,7 +203,7 @@ def test_remedy_of_a_load_list_names_the_lightest_load_that_fits(machine: Callab
 def test_commands_refuse_a_mesh_that_does_not_fit(
     command: str, machine: Callable[[float], None], tmp_path: Path, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
-) -> None:  # fmt: skip
+) -> None:
     """Status 2 before a mesh is made, nothing written; --force goes on."""
     monkeypatch.setattr("evolvent.gears.meshing.levelled_meshes.sector_mesh", lambda *_: pytest.fail("a mesh was made"))
     machine(200.0)

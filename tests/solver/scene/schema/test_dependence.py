@@ -43,7 +43,7 @@ BESIDE = {
     "strength.tolerance_class": ["pinion.addendum_coefficient=1.3", "wheel.addendum_coefficient=1.3",
                                  "pinion.dedendum_coefficient=1.55", "wheel.dedendum_coefficient=1.55",
                                  "pinion.teeth=50", "wheel.teeth=60", "pair.centre_distance_mm=165.1"],
-}  # fmt: skip
+}
 """Key -> settings beside which it counts: room for the fillets of a protuberance, both deviations without which there
 is no K_v, teeth with tip relief, a contact ratio above 2.05. Tolerance classes are data of gears, and may stand where
 the standard does not ask for them."""

@@ -25,7 +25,7 @@ def drawn() -> Figure:
     loads = FlankLoads(
         np.zeros((2, COUNT), dtype=int), np.linspace(-3.0, 3.0, COUNT), np.zeros(COUNT),
         np.linspace(800.0, 1500.0, COUNT), np.full(COUNT, 0.1), np.full(COUNT, 0.1),
-    )  # fmt: skip
+    )
     own = flank_fatigue(loads, 0.1, DEPTHS, STEEL)
     return fatigue_figure("a pair", spur_scene().gear_pair(), [FrictionFatigue(0.1, (own, own), math.nan)])
 

@@ -23,7 +23,7 @@ def formulas(helix_angle: float) -> list[StrengthRow]:
             bore_diameter=bore, hand=hand,
         )
         for z, bore, hand in ((30, 40.0, 1), (50, 60.0, -1))
-    )  # fmt: skip
+    )
     pair = GearPair(pinion, wheel, 120.0 / math.cos(math.radians(helix_angle)))
     return [row for member in Member for row in formula_rows(RootLoad(pair, member, 150e3), (2006, 2019), 6)]
 

@@ -39,7 +39,7 @@ def flank(peaks: list[float], shear: Rows, tension: Floats) -> FlankFatigue:
     loads = FlankLoads(
         place, np.array([-2.0, 0.0, 3.0])[:n], np.zeros(n), np.array(peaks), np.array([0.1, 0.2, 0.1])[:n],
         np.full(n, 0.2),
-    )  # fmt: skip
+    )
     surface = np.zeros((n, 4))
     surface[:, 0] = peaks
     edge = np.zeros((n, 4))
@@ -104,14 +104,14 @@ def test_coefficients_are_compared_at_one_point() -> None:
     jumped = flank([1000.0] * 3, [[80, 90, 410, 450], [72, 90, 440, 550], [64, 70, 380, 64]], 150.0 * np.ones(3))
     found = [FOUND[0], FrictionFatigue(0.15, (jumped, jumped), math.nan)]
     rows = {row.friction: row for row in fatigue_rows(PAIR, found)
-            if (row.gear, row.criterion, row.place) == ("pinion", ORTHOGONAL_SHEAR.name, BELOW)}  # fmt: skip
+            if (row.gear, row.criterion, row.place) == ("pinion", ORTHOGONAL_SHEAR.name, BELOW)}
     first, second = rows[0.2], rows[0.15]
     assert (second.value, second.roll_distance_mm, second.depth_um) == (550.0, 0.0, 200.0)
     assert (second.point_roll_distance_mm, second.point_value, second.point_depth_um) == (-2.0, 450.0, 100.0)
     assert (first.point_roll_distance_mm, first.point_value, first.change_percent) == (-2.0, 500.0, 0.0)
     assert second.change_percent == pytest.approx(-10.0)
     lives = [row.life_ratio for row in life_rows(found, [4.0]) if (row.criterion, row.place, row.exponent) == (
-        ORTHOGONAL_SHEAR.name, BELOW, 4.0)]  # fmt: skip
+        ORTHOGONAL_SHEAR.name, BELOW, 4.0)]
     assert lives == pytest.approx([0.9**-4] * 2)
 
 
@@ -136,7 +136,7 @@ def test_lives() -> None:
     assert tension.life_ratio_at_points == pytest.approx(0.8**-4)
     pressure = [row for row in rows if row.criterion == "contact_pressure" and row.gear == "wheel"]
     assert [(row.exponent, bool(row.source), row.life_ratio) for row in pressure] == [
-        (13.22, True, 1.0), (4.0, False, 1.0)]  # fmt: skip
+        (13.22, True, 1.0), (4.0, False, 1.0)]
 
 
 def test_life_without_what_there_was(recwarn: pytest.WarningsRecorder) -> None:
@@ -169,7 +169,7 @@ def test_map_has_what_lies_at_each_depth() -> None:
     """Shear below the second point: 90 at the surface, 300 at 0.1 half-widths, 450 at most from 0.2 down, half of 0.2
     mm below it; nothing at depths that were not evaluated."""
     (row,) = [row for row in map_rows(PAIR, FOUND[:1]) if (row.gear, row.criterion, row.roll_distance_mm) == (
-        "pinion", ORTHOGONAL_SHEAR.name, 0.0)]  # fmt: skip
+        "pinion", ORTHOGONAL_SHEAR.name, 0.0)]
     assert (row.at_surface, row.at_0_1, row.below, row.depth_um) == (90.0, 300.0, 450.0, 100.0)
     assert math.isnan(row.at_0_02) and math.isnan(row.at_0_05)
     assert list(SHALLOW) == ["0.02 half-widths", "0.05 half-widths", TENTH]
@@ -183,7 +183,7 @@ def test_depths_below_the_most_loaded_point() -> None:
     shear = [(row.depth_um, row.depth_over_half_width, row.value) for row in own]
     assert shear == [
         (0.0, 0.0, 100.0), (pytest.approx(10.0), 0.1, 120.0), (pytest.approx(50.0), 0.5, 400.0), (100.0, 1.0, 500.0)
-    ]  # fmt: skip
+    ]
     assert [row.criterion for row in rows].count("contact_pressure") == 1
     assert [row.criterion for row in rows].count("tension") == 2
 

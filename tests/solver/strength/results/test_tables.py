@@ -24,7 +24,7 @@ def load(member: Member, helix_angle: float = 0.0, times: int = 1, rack_tip_radi
             face_width=20.0, bore_diameter=bore, hand=hand, rack_tip_radius_coefficient=rack_tip_radius,
         )
         for z, bore, hand in ((30, 40.0, 1), (50, 60.0, -1))
-    )  # fmt: skip
+    )
     return RootLoad(GearPair(pinion, wheel, times * 120.0 / math.cos(math.radians(helix_angle))), member, 150e3)
 
 

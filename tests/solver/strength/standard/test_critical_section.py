@@ -17,7 +17,7 @@ def spur(z: int, x: float, radius: float | None, angle: float = 20.0, allowance:
     return GearParameters.from_rack(
         z=z, normal_module=2.5, normal_pressure_angle_deg=angle, profile_shift=x, rack_tip_radius_coefficient=radius,
         face_width=10.0, bore_diameter=15.0, tooth_thickness_allowance_um=allowance,
-    )  # fmt: skip
+    )
 
 
 def touched(gear: GearParameters) -> tuple[Floats, float]:

@@ -22,7 +22,7 @@ STRESSES = {
     (0.20, Member.PINION): (530.1, 351.9, 328.0, 220.7), (0.20, Member.WHEEL): (546.5, 372.9, 348.6, 228.3),
     (0.25, Member.PINION): (516.1,), (0.25, Member.WHEEL): (533.8,),
     (0.30, Member.PINION): (502.8,), (0.30, Member.WHEEL): (521.7,),
-}  # fmt: skip
+}
 """Rack tip radius and gear -> stresses [MPa] at b, c, d, e: the paper's Eqs 1-25 in their correct ISO form, computed
 apart."""
 
@@ -39,7 +39,7 @@ def helical_pair(angle: float, face_width: float = 20.0) -> GearPair:
             face_width=face_width, bore_diameter=15.0,
         )
         for z, hand in ((21, 1), (34, -1 if angle else 1))
-    ]  # fmt: skip
+    ]
     distance = 0.5 * (gears[0].reference_diameter + gears[1].reference_diameter)
     return GearPair(gears[0], gears[1], centre_distance=distance)
 

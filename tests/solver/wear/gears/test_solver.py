@@ -17,7 +17,7 @@ from tests.support.gears_api_curve import he_problem
 WEAR = (
     "wear.cycles=4e4", "wear.pinion_mm2_per_N=1e-10", "wear.wheel_mm2_per_N=3e-10", "wear.report_at_cycles=2e4",
     "wear.first_block_cycles=1e4", "sweep.positions=4", "mesh.level='quick'",
-)  # fmt: skip
+)
 
 
 def test_wear_study_of_the_api_equals_that_of_a_run(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ def test_a_wear_study_ends_with_the_worn_pair(tmp_path: Path) -> None:
     (tmp_path / "summary.json").write_text(json.dumps({"frictions": [row]}))
     gear = {"deepest_um": 1.234, "at_diameter_mm": 147.0}
     worn = {"cycles": 4e5, "pinion": gear, "wheel": {"deepest_um": 0.0, "at_diameter_mm": 0.0},
-            "max_pressure_MPa": 555.0, "transmission_error_peak_to_peak_um": 2.5}  # fmt: skip
+            "max_pressure_MPa": 555.0, "transmission_error_peak_to_peak_um": 2.5}
     reports = [worn | {"cycles": 0.0, "max_pressure_MPa": 600.0}, worn | {"max_pressure_MPa": 570.0}, worn]
     (tmp_path / "wear.json").write_text(json.dumps({"reports": reports}))
     lines = last_lines(tmp_path, load_scene("demos/he2022.toml", WEAR)).splitlines()

@@ -176,7 +176,7 @@ def start_rows(
                 UM * moment.result.transmission_error, float(of_error),
                 UM * case.static[still].transmission_error, width * moment.mesh_force, width * float(of_force),
                 width * case.load, float(peak), float(of_peak), float(calm[still]),
-            )  # fmt: skip
+            )
 
 
 def write_start(folder: RunFolder, rows: Sequence[StartRow]) -> None:

@@ -117,7 +117,7 @@ def _unknown(count: int, said: str = "") -> CaseErrors:
 def _errors(
     own: GearModel, pressures: CasePressures, companion: MovingCompanion, motions: tuple[MeshPeriods, MeshPeriods],
     still: Sequence[PositionResult],
-) -> CaseErrors:  # fmt: skip
+) -> CaseErrors:
     """still: the companion's statics."""
     case, order, inner = pressures.case, companion.order, pressures.moving.inner_path
     moving, static = (

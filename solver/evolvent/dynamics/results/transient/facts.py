@@ -120,7 +120,7 @@ class TransientFacts:
 def transient_facts(
     model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors], starts: Sequence[StartErrors],
     frequencies: Floats, naturals: Sequence[float],
-) -> list[TransientFacts]:  # fmt: skip
+) -> list[TransientFacts]:
     """Of all cases with their error bars. starts: error bars of motions from rest, empty without. frequencies: of the
     modes [rad/s]; naturals: of each case, see `natural_frequency_Hz`."""
     width, facts = model.width_factor, []
@@ -147,7 +147,7 @@ def transient_facts(
             bars.max_pressure, largest(still), bars.static_max_pressure, worst.momentum, worst.reaction, worst.moment,
             worst.motion, worst.exchange, abs(energies.left) / passed, energies.friction / passed,
             energies.damping / passed, energies.numerical / passed,
-        ))  # fmt: skip
+        ))
     return facts
 
 

@@ -42,7 +42,7 @@ class KeptTables:
             _title(folder / SCENE), _table(folder / TRANSIENT, TransientRow),
             _table(folder / TRANSIENT_TEETH, TransientToothRow), _facts(folder / TRANSIENT_FACTS),
             _table(start, StartRow) if start.exists() else (),
-        )  # fmt: skip
+        )
 
 
 def _title(path: Path) -> str:

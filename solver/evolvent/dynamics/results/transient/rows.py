@@ -97,7 +97,7 @@ def transient_rows(
                 UM * result.transmission_error, float(of_error), UM * still.transmission_error, moment.rate,
                 width * moment.mesh_force, width * float(of_force), 1e-3 * width * result.torques[0],
                 1e-3 * width * result.torques[1], float(peak), float(of_peak), float(calm),
-            )  # fmt: skip
+            )
 
 
 def tooth_rows(
@@ -121,7 +121,7 @@ def tooth_rows(
                 rows.append(TransientToothRow(
                     case.speed, case.friction, float(np.degrees(angle)), forces[0], width * of_force, forces[1],
                     peaks[0], of_peak, peaks[1],
-                ))  # fmt: skip
+                ))
         yield from sorted(rows, key=lambda row: row.tooth_angle_deg)
 
 

@@ -78,4 +78,4 @@ class StepsTaken:
             min(each.shortest for each in every), max(each.error for each in every),
             sum(each.impulse for each in every), max(each.largest_force for each in every),
             min(each.lowest_error for each in every),
-        )  # fmt: skip
+        )

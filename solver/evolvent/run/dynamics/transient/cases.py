@@ -81,7 +81,7 @@ class PairCases:
     def of(
         scene: Scene, problem: GearProblem, settings: DriveSettings, on: PairMeshes, kept: KeptCases, comm: MPI.Comm,
         progress: Progress, prepare: Preparer,
-    ) -> PairCases:  # fmt: skip
+    ) -> PairCases:
         """Meshes, condenses, solves the statics that are not kept, and finds the modes. Collective. Raises MeshError,
         TooMuchRelief, NotConverged, SearchError, BalanceError, ArchiveError, WriteError."""
         section, dynamics = transient_section(scene), scene.dynamics or DynamicsSection()
@@ -145,7 +145,7 @@ class PairCases:
     def _shared(
         self, kept: KeptCases, contacts: KeptContacts, solved: Callable[[int, PairTransient, PairState], Motion],
         stage: str,
-    ) -> dict[int, MeshPeriods]:  # fmt: skip
+    ) -> dict[int, MeshPeriods]:
         """Cases that are kept and those that are solved, on rank 0. solved: by number, transient and its start. stage:
         to be shown."""
         known = together(self.comm, lambda: kept.read() if self.comm.rank == 0 else {})

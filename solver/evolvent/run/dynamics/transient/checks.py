@@ -25,7 +25,7 @@ UNUSED = "series_stiffness_N_per_um", "ground_damping_ratio", "mesh"
 WRITTEN = (
     SCENE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_START, TRANSIENT_FACTS,
     *(f"pictures/{name}" for name in (PICTURE, START_PICTURE, ANIMATION)),
-)  # fmt: skip
+)
 
 
 def transient_section(scene: Scene) -> TransientSection:

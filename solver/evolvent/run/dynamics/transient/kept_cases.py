@@ -93,7 +93,7 @@ class KeptCases:
         arrays = _moments_arrays(found.moments, "") | _moments_arrays(found.beginning, BEGINNING) | {
             "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
             "residuals": astuple(found.residuals), "lowest_error": found.lowest_error,
-        }  # fmt: skip
+        }
         self._write(self._name(self.names[number]), self.identity, arrays)
 
     def _name(self, what: str) -> str:
@@ -106,7 +106,7 @@ class KeptCases:
         return MeshPeriods(
             self._moments(arrays, ""), arrays["errors"], arrays["changes"], float(arrays["wanted"]),
             Residuals(*arrays["residuals"].tolist()), float(arrays["lowest_error"]), self._moments(arrays, BEGINNING),
-        )  # fmt: skip
+        )
 
     def _moments(self, arrays: dict[str, Any], start: str) -> tuple[PairMoment, ...]:
         columns = (arrays[start + name].tolist() for name in ("moments", "balances", "energies", "steps"))

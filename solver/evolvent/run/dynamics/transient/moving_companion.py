@@ -31,7 +31,7 @@ with all modes, with one within 2 % (tests/solver/dynamics/transient/test_full_g
 def companion_of(
     scene: Scene, problem: GearProblem, settings: DriveSettings, kept: Callable[[str], KeptCases], comm: MPI.Comm,
     progress: Progress, prepare: Preparer,
-) -> tuple[MovingCompanion | None, list[str]]:  # fmt: skip
+) -> tuple[MovingCompanion | None, list[str]]:
     """Its cases on rank 0, none where the scene asks for no error bars; and why there are none: results are not lost
     for their error bars. kept: by the kind of cases. Collective. Raises ArchiveError, WriteError, FolderError."""
     if not wanted_output(scene).error_bars:

@@ -30,6 +30,6 @@ def summary_lines(folder: Path) -> Iterator[str]:
             calm = fact.get(f"{STATIC}{key}")
             without = "" if calm is None else (
                 f" (without inertia {plus_minus(calm, fact[f'{STATIC}{key}_error'] or 0.0, digits)})"
-            )  # fmt: skip
+            )
             parts.append(f"{name} {value} {unit}".rstrip() + without)
         yield f"{fact['speed_rpm']:g} r/min, μ = {fact['friction']:g}: {', '.join(parts)}"

@@ -47,7 +47,7 @@ from evolvent.scene.vibration_limits import doubtful
 def run_transient(
     scene: Scene, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False,
     prepare: Preparer = prepare_model,
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """Moves the pair on at each speed and friction coefficient until its motion repeats, and writes tables and picture
     to `out`. Returns sentences on what a reader has to know. Collective: the ranks share speeds and coefficients.
 

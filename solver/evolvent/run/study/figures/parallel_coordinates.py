@@ -37,7 +37,7 @@ def parallel_figure(values: StudyValues, names: Sequence[str]) -> Figure:
     columns += [values.of(name) for name in shown]
     complete = np.isfinite(np.array(columns)).all(axis=0)
     figure = sheet(values.title, f"{int(complete.sum())} scenes, coloured by {_label(shown[0])}.",
-                   (max(9.6, 1.7 * len(heads)), 5.8))  # fmt: skip
+                   (max(9.6, 1.7 * len(heads)), 5.8))
     axes = figure.subplots()
     axes.grid(visible=False)
     places = np.arange(len(columns), dtype=float)
@@ -48,7 +48,7 @@ def parallel_figure(values: StudyValues, names: Sequence[str]) -> Figure:
     lines = LineCollection(
         [np.column_stack([places, line]) for line in scaled.T[order]], array=colour[order], norm=norm,
         cmap=FRICTION_MAP.reversed(), linewidths=1.2, alpha=0.75,
-    )  # fmt: skip
+    )
     axes.add_collection(lines)
     for k, column in enumerate(columns):
         _axis(axes, k, column[complete], values.axes[k].texts if k < len(values.axes) else None)
@@ -81,7 +81,7 @@ def _axis(axes: Axes, place: int, known: Floats, texts: Sequence[str] | None) ->
         ticks = [(float(at), f"{value:.4g}") for at, value in zip(_scaled(marks, known), marks)]
     for at, text in ticks:
         axes.text(place + 0.03, at, text, fontsize=7.5, color=INK, va="center",
-                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5})  # fmt: skip
+                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5})
 
 
 def _label(name: str) -> str:

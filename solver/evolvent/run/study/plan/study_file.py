@@ -62,7 +62,7 @@ class LatinHypercubeSection(SceneSection):
     page: ClassVar[str] = "docs/studies.md"
     samples: int = key("number of samples", "a whole number from 1 to 1000000", ge=1, le=MOST_SCENES)
     seed: int = key("seed of the random numbers: the same one gives the same samples", "a whole number from 0 on",
-                    default=0, ge=0)  # fmt: skip
+                    default=0, ge=0)
     ranges: Ranges = key(
         "keys of the scene with the lowest and the highest value of each",
         "keys of the scene, each with two different numbers, the lower one first",
@@ -93,17 +93,17 @@ class FigureSection(SceneSection):
         "file in the folder of a scene that has it",
         "the name of a CSV or JSON file in it, or in a folder below it, docs/outputs.md",
         pattern=r"^([\w-][\w.-]*/)*[\w-][\w.-]*\.(csv|json)$",
-    )  # fmt: skip
+    )
     column: str = key("column of the CSV file, or key of the JSON file, dotted where it lies deeper",
-                      "a text, docs/outputs.md", min_length=1)  # fmt: skip
+                      "a text, docs/outputs.md", min_length=1)
     rows: str = key("key of the list of a JSON file whose entries are its rows", "a text, docs/outputs.md", default="")
     where: Annotated[dict[str, str | int | float], BeforeValidator(flat)] = key(
         "columns with the value that the row must have", "columns, each with a text or a number", default={},
-    )  # fmt: skip
+    )
     statistic: Literal["only", "max", "min", "mean", "peak_to_peak", "last"] = key(
         "what is taken of several rows", '"only", where there is just one, or "max", "min", "mean", "peak_to_peak", '
         '"last"', default="only",
-    )  # fmt: skip
+    )
 
 
 class StudyFile(SceneSection):
@@ -112,31 +112,31 @@ class StudyFile(SceneSection):
     kind: ClassVar[str] = "study"
     page: ClassVar[str] = "docs/studies.md"
     title: str = key("a name for table and pictures", "a text of up to 200 characters", default="study",
-                     max_length=200)  # fmt: skip
+                     max_length=200)
     scene: str = key("the base scene: a path relative to the folder of the study file", "the name of a scene file",
-                     min_length=1, max_length=1000)  # fmt: skip
+                     min_length=1, max_length=1000)
     compute: Computation = key(
         "what is computed of each scene, as the command of this name does; wear: as `run` of a scene with [wear]",
         ", ".join(f'"{name}"' for name in COMPUTATIONS), default="run",
-    )  # fmt: skip
+    )
     figures: Texts | None = key(
         "figures that the table gathers, by name; those of the computation by default", "a list of names of figures",
         "give names of figures in a list; a figure of your own is a section [[figure]]", default=None, min_length=1,
-    )  # fmt: skip
+    )
     leave_out: Texts = key("keys of the base scene that are left out", "a list of keys of the scene", default=())
     share_gears: bool = key(
         "condense the gears of scenes that differ in torque, friction or misalignment only once, on meshes that serve "
         "all their torques", "true or false", default=True,
-    )  # fmt: skip
+    )
     set: SceneKeys = key("keys that all scenes share, in place of the base scene's", "keys of the scene with a value",
-                         default={})  # fmt: skip
+                         default={})
     grid: ValueLists = key(
         "keys with a list of values each: all combinations", "keys of the scene, each with a list", EXAMPLE, default={}
     )
     list: ValueLists = key(
         "keys with lists of values that go side by side: the first of each, the second, ...",
         "keys of the scene, each with a list, all equally long", EXAMPLE, default={},
-    )  # fmt: skip
+    )
     latin_hypercube: LatinHypercubeSection | None = None
     figure: Annotated[
         tuple[FigureSection, ...], BeforeValidator(lambda given: tuple(given) if isinstance(given, list) else given)
@@ -150,7 +150,7 @@ class StudyFile(SceneSection):
         for part, name, value in keys:
             if problem := key_problem(name, value, Scene):
                 raise validation_error(InputProblem(f"{part}.{problem.key}", problem.found, problem.allowed,
-                                                    problem.remedy))  # fmt: skip
+                                                    problem.remedy))
         return self
 
     @model_validator(mode="after")

@@ -61,4 +61,4 @@ def check_figures(scene: Scene) -> CheckFigures:
         pair.centre_distance, pair.transverse_contact_ratio, pair.overlap_ratio, pair.total_contact_ratio,
         1e3 * pair.normal_backlash, float(pinion), float(wheel), float(scene.hertz_estimate().peak_pressure(0.0)),
         sum(size.dofs for size in sector_sizes(scene)), memory_megabytes(scene),
-    )  # fmt: skip
+    )

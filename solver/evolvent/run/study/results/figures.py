@@ -89,7 +89,7 @@ def _of_wear() -> list[Figure]:
 CATALOGUE: Mapping[Computation, list[Figure]] = {
     "check": _of_check(), "run": _of_run(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
     "strength": _of_strength(), "wear": _of_wear(),
-}  # fmt: skip
+}
 """Figures with a name, by computation."""
 DEFAULTS: Mapping[Computation, tuple[str, ...]] = {
     "check": ("transverse_contact_ratio", "total_contact_ratio", "pitch_point_pressure_MPa", "pinion_tip_thickness_mm",
@@ -102,7 +102,7 @@ DEFAULTS: Mapping[Computation, tuple[str, ...]] = {
                                                                                       "ISO_2006", "ISO_2019")),
     "wear": ("pinion_deepest_um", "wheel_deepest_um", "worn_max_pressure_MPa",
              "worn_transmission_error_peak_to_peak_um"),
-}  # fmt: skip
+}
 """Names of the figures that are gathered where a study names none."""
 
 
@@ -135,5 +135,5 @@ def _require_own_columns(own: Sequence[Figure], study: StudyFile, source: str) -
         if figure.name in (*OWN, *parameters, *errors):
             allowed = f"a name of its own: the table has {', '.join(OWN)}, parameters and error bars"
             problem = InputProblem(f"figure[{number}].name", f"{figure.name!r}, another column of the table", allowed,
-                                   "name the figure otherwise")  # fmt: skip
+                                   "name the figure otherwise")
             raise SceneError([problem], source)

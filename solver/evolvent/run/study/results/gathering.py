@@ -19,7 +19,7 @@ ERROR = "_error"
 STATISTICS: Mapping[str, Callable[[Sequence[float]], float]] = {
     "max": max, "min": min, "mean": fmean, "last": lambda values: values[-1],
     "peak_to_peak": lambda values: max(values) - min(values),
-}  # fmt: skip
+}
 """What is taken of several rows."""
 ONLY = "only"
 MEGABYTES = 200

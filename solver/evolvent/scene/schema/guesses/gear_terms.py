@@ -152,4 +152,4 @@ GEAR_TERMS: tuple[Term, ...] = (
          "an axial offset of the gears is not supported: the middles of both faces meet"),
     Term("shaft_angle axis_angle", (), "crossed axes are not supported; tilts of the shafts in the plane of action are "
          "pair.misalignment_um"),
-)  # fmt: skip
+)

@@ -65,7 +65,7 @@ HABITS: tuple[_Habit, ...] = (
     _Habit(r"^\s*[^\W\d][\w-]*(?: [\w-]+)*\s*$", "a text without quotes", lambda part: _write(
         WORDS.get(part.strip(), f'"{part.strip()}"'),
         "" if part.strip() in WORDS else 'texts stand in "quotes"')),
-)  # fmt: skip
+)
 
 
 def written_otherwise(line: str) -> WrittenOtherwise | None:

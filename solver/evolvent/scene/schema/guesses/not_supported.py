@@ -32,7 +32,7 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
      "only, told apart by pair.helix_angle_deg"),
     (r"web|spoke|rib|hole", "a web is a full disc, web_thickness_mm, between rim_thickness_mm and hub_diameter_mm, "
      "without holes, ribs and spokes"),
-)  # fmt: skip
+)
 """Regular expression for the name of an unknown key, perhaps behind its section's, and what to answer."""
 
 
@@ -40,7 +40,7 @@ OUTSIDE_DYNAMICS: tuple[tuple[str, str], ...] = (
     (r"rpm|speed|omega|velocity|frequency|time", "there is no time and no speed outside [dynamics] and [transient]: "
      "a run is quasi-static"),
     (r"dynamic|damping|inertia|mass|density|vibration|noise|nvh", "a run is quasi-static; that is for [dynamics]"),
-)  # fmt: skip
+)
 """The same, of other sections than those of `IN_TIME`."""
 IN_TIME = ("dynamics", "transient")
 """Sections with speeds and inertia."""

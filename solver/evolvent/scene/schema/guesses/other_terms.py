@@ -126,7 +126,7 @@ OTHER_TERMS: tuple[Term, ...] = (
     Term("name description comment project author", ("title",)),
     Term("threads cores ranks processes n_cpus cpus parallel", (), "ranks are those of mpirun -n on the command line"),
     Term("version schema_version format units unit_system", (), "a scene has none: units are in the names of its keys"),
-)  # fmt: skip
+)
 
 SECTION_TERMS: tuple[Term, ...] = (
     Term("gear gear2 gear_2 driven driven_gear wheel_gear gearwheel bull_gear output_gear large_gear gear_b",
@@ -150,7 +150,7 @@ SECTION_TERMS: tuple[Term, ...] = (
          "a rack as a gear is not supported; the basic rack of a gear has keys in [pinion] and [wheel], such as "
          "addendum_coefficient and dedendum_coefficient"),
     Term("solver analysis petsc linear_solver newton", (), "solvers have no settings in a scene"),
-)  # fmt: skip
+)
 
 STUDY_TERMS: tuple[Term, ...] = (
     Term("base base_scene scene_file base_file", ("scene",)),
@@ -163,5 +163,5 @@ STUDY_TERMS: tuple[Term, ...] = (
     Term("exclude without drop remove omit", ("leave_out",)),
     Term("name description project", ("title",)),
     Term("workers processes threads parallel jobs", (), "workers are given on the command line: --workers N"),
-)  # fmt: skip
+)
 """Of study files."""

@@ -56,7 +56,7 @@ def _both(keys: tuple[str, ...], section: str) -> tuple[str, ...]:
     return tuple(
         f"{gear}.{key.removeprefix('gear.')}" if key.startswith("gear.") else key
         for key in keys for gear in (of_gears if key.startswith("gear.") else ("",))
-    )  # fmt: skip
+    )
 
 
 def _written(key: str, section: str) -> str:

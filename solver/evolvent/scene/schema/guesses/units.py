@@ -27,7 +27,7 @@ UNITS: dict[str, tuple[str, float]] = {
     "per_MPa": ("wear", 1.0), "N": ("force", 1.0), "kN": ("force", 1e3), "lbf": ("force", 4.448222),
     "kW": ("power", 1e3), "W": ("power", 1.0), "hp": ("power", 745.7), "s": ("time", 1.0), "h": ("time", 3600.0),
     "Hz": ("frequency", 1.0), "C": ("temperature", 1.0), "kg": ("mass", 1.0), "percent": ("share", 1.0),
-}  # fmt: skip
+}
 """Unit -> quantity, and its value in one of that quantity's units."""
 ENDING = re.compile(rf"_({'|'.join(sorted(UNITS, key=len, reverse=True))})$", re.IGNORECASE)
 SPELLED = {unit.lower(): unit for unit in reversed(UNITS)}

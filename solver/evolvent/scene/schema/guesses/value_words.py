@@ -21,7 +21,7 @@ VALUE_WORDS: tuple[tuple[str, Any], ...] = (
     ("static quasi_static quasistatic", "statics"), ("impact blow standstill", "rest"),
     ("flywheel prescribed constant", "constant_speed"), ("front drive_side", "loaded"), ("coast_side rear", "back"),
     ("yes on", True), ("no off", False),
-)  # fmt: skip
+)
 """Words, separated by spaces, in lower case with underscores, and the value; it counts where a key may have it."""
 
 

@@ -16,7 +16,7 @@ from evolvent import (
     Traction,
     Transient,
     TransientSettings,
-)  # fmt: skip
+)
 from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import rectangle

@@ -34,7 +34,7 @@ def test_errors_above_the_tolerance_count_for_the_shortest_step_alone() -> None:
     (0, 0.0, 8.0, 0),
     (2, 0.0013, 7.5, 2),  # four times as much is more than half the tolerance
     (3, 0.02, 7.5, 3),
-])  # fmt: skip
+])
 def test_steps_grow_where_errors_are_small(halvings: int, error: float, reached: float, wanted: int) -> None:
     """By one halving, below an eighth of the tolerance, at multiples of the longer step."""
     assert RULES.after(halvings, error, reached) == wanted
@@ -57,5 +57,5 @@ def test_steps_are_joined() -> None:
     """Numbers and impulses add up, the shortest, the largest error and force, the lowest transmission error stay."""
     found = StepsTaken.joined([
         StepsTaken(1, 2, 0.25, 0.1, 3.0, 12.0, -0.5), StepsTaken(3, 0, 0.125, 0.01, 4.0, 8.0, 0.5)
-    ])  # fmt: skip
+    ])
     assert found == StepsTaken(4, 2, 0.125, 0.1, 7.0, 12.0, -0.5)

@@ -23,7 +23,7 @@ SETTINGS = (
     f"transient.tolerance={TOLERANCE}", "transient.modes_per_harmonic=1",
     "dynamics.damping_ratio=0.2", "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
     "output.error_bars=false",
-)  # fmt: skip
+)
 
 
 def scene(*settings: str) -> Scene:

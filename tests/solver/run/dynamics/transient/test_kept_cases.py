@@ -23,7 +23,7 @@ TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
 SETTINGS = (
     "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[2000]",
     "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
-)  # fmt: skip
+)
 WHOLE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
 STOPPED = """
 import sys
@@ -106,7 +106,7 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
     assert kept(tmp_path) == [
         "transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_coarse_static.npz",
         "transient_finer_2000rpm_0.npz", "transient_finer_2000rpm_1.npz", "transient_static.npz",
-    ]  # fmt: skip
+    ]
     monkeypatch.setattr(module, "sweep_until_periodic", None)
     said = run_transient(scene(), tmp_path, resume=True, quiet=True)
     assert len(counts) == 2 + 4 + 2
@@ -153,7 +153,7 @@ def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypa
 def test_speeds_that_are_added_later(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, modes: tuple[str, ...], speeds: tuple[int, ...],
     more: tuple[int, ...],
-) -> None:  # fmt: skip
+) -> None:
     """A lower speed before the first one; a higher one where the modes do not follow from it: that one alone is
     computed, without its statics, and the tables are those of one call with both speeds."""
 

@@ -46,7 +46,7 @@ def test_picture_is_drawn_again(out: Path, capsys: pytest.CaptureFixture[str]) -
 def test_start_from_rest_is_drawn_again(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Where its table is there; each value is read to nine digits."""
     wanted = [StartRow(1500.0, μ, time, 1.0, 2.0, 0.1, 1.0, 3.0, 0.1, 1.0, 500.0, 5.0, 400.0)
-              for μ in (0.0, 0.1) for time in (1e-4, 2e-4)]  # fmt: skip
+              for μ in (0.0, 0.1) for time in (1e-4, 2e-4)]
     write_start(RunFolder(out), wanted)
     assert KeptTables.read(out).started == wanted
     assert main(["plot", str(out)]) == 0

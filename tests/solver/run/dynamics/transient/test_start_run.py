@@ -21,7 +21,7 @@ POSITIONS = 40
 SETTINGS = (
     "mesh.level=quick", f"sweep.positions={POSITIONS}", "transient.speeds_rpm=[60]", "transient.mesh_periods=2",
     "transient.tolerance=0.01", "transient.modes_per_harmonic=0", "dynamics.backlash_um=300", "output.animation=false",
-)  # fmt: skip
+)
 PLAIN = "output.error_bars=false", "output.pictures=false"
 WHOLE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
 
@@ -95,7 +95,7 @@ def test_from_statics_there_is_no_such_table(tmp_path: Path) -> None:
     run_transient(scene('transient.start="rest"', *PLAIN), tmp_path / "x", quiet=True)
     assert (tmp_path / "x/transient_start.csv").exists()
     said = run_transient(scene("dynamics.series_stiffness_N_per_um=700", *PLAIN), tmp_path / "x", overwrite=True,
-                         quiet=True)  # fmt: skip
+                         quiet=True)
     assert not (tmp_path / "x/transient_start.csv").exists()
     assert "from rest" not in "".join(summary_lines(tmp_path / "x"))
     assert any(line.startswith("dynamics.series_stiffness_N_per_um: not in a transient") for line in said)

@@ -23,11 +23,11 @@ from tests.support.checkout import ROOT
 
 SETTINGS = (
     "transient.mesh_periods=200", "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
-)  # fmt: skip
+)
 TRIED = "mesh.level=quick", "sweep.positions=10", "transient.speeds_rpm=[2000,4200]", "dynamics.damping_ratio=0.03"
 RESOLVED = (
     *TRIED, "mesh.level=standard", "sweep.positions=80", "transient.modes_per_harmonic=3", "output.error_bars=false",
-)  # fmt: skip
+)
 FEW = "mesh.level=quick", "sweep.positions=6", "transient.speeds_rpm=[3000]", "dynamics.damping_ratio=0.2"
 
 

@@ -27,7 +27,7 @@ POSITIONS = 10
 SETTINGS = (
     "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[30,2000]",
     "transient.spectral_radius=0.0", "dynamics.backlash_um=50", "transient.drive=constant_speed",
-)  # fmt: skip
+)
 
 
 def scene(*settings: str) -> Scene:
@@ -95,7 +95,7 @@ def test_facts(out: Path) -> None:
     force rises by more than 10 %, at 30 r/min by less than 1 %."""
     facts = json.loads((out / "transient.json").read_text())
     assert [(fact["speed_rpm"], fact["friction"]) for fact in facts] == [
-        (30.0, 0.0), (30.0, 0.2), (2000.0, 0.0), (2000.0, 0.2)]  # fmt: skip
+        (30.0, 0.0), (30.0, 0.2), (2000.0, 0.0), (2000.0, 0.2)]
     for fact in facts:
         assert fact["steady"]
         assert fact["last_change"] <= 0.005
@@ -158,7 +158,7 @@ def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
 def test_a_motion_that_does_not_repeat_yet_is_named(tmp_path: Path) -> None:
     """Two mesh periods of a lightly damped pair from statics are not enough."""
     few = scene("transient.speeds_rpm=[2000]", "contact.friction=0", "transient.mesh_periods=2",
-                "dynamics.damping_ratio=0.01", "output.pictures=false", "output.animation=false")  # fmt: skip
+                "dynamics.damping_ratio=0.01", "output.pictures=false", "output.animation=false")
     said = run_transient(few, tmp_path, quiet=True)
     assert "not steady after 2 mesh periods" in said[0]
 
@@ -166,7 +166,7 @@ def test_a_motion_that_does_not_repeat_yet_is_named(tmp_path: Path) -> None:
 def test_back_flanks_are_refused(tmp_path: Path) -> None:
     """Near resonance with hardly damping the pair is thrown apart further than a backlash of 1 µm."""
     thrown = scene("transient.speeds_rpm=[4200]", "contact.friction=0", "dynamics.damping_ratio=0.005",
-                   "dynamics.backlash_um=1", "transient.spectral_radius=0.9", "transient.drive=free")  # fmt: skip
+                   "dynamics.backlash_um=1", "transient.spectral_radius=0.9", "transient.drive=free")
     with pytest.raises(BackFlanks, match="back flanks"):
         run_transient(thrown, tmp_path, quiet=True)
     assert not (tmp_path / "transient.csv").exists()
@@ -187,7 +187,7 @@ def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: 
     """Two ranks divide speeds and coefficients: the same tables to 1e-6, and one line at the end."""
     code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--set", "output.pictures=false",
-                 "--set", "output.animation=false"]  # fmt: skip
+                 "--set", "output.animation=false"]
     for setting in SETTINGS:
         arguments += ["--set", setting]
     done = run_script("-c", code, *arguments, ranks=ranks)

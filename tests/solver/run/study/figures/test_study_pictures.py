@@ -91,7 +91,7 @@ def test_map_says_where_a_figure_is_least_and_largest() -> None:
     figure = map_figure(values([("load.torque_Nm",), ("pair.misalignment_um",)], [*points, (9.0, 9.0)]), "peak_MPa")
     assert [text.get_text() for text in figure.texts[:2]] == [
         "Peak [MPa]", "a study. Least −4 at 1 N·m and −5 µm, largest 11 at 2 N·m and 9 µm."
-    ]  # fmt: skip
+    ]
     assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["−5", "9"]
     named = values([("pinion.profile_shift",), ("mesh.level",)], [(0.5, "fine"), (1.0, "quick"), (2.0, "quick")])
     said = map_figure(named, "peak_MPa").texts[1].get_text()
@@ -127,4 +127,4 @@ def test_parallel_lines_are_of_complete_scenes() -> None:
     assert len(lines.get_segments()) == 2  # type: ignore[attr-defined]
     assert [tick.get_text() for tick in figure.axes[0].get_xticklabels()] == [
         "torque [N·m]", "misalignment [µm]", "level", "peak [MPa]", "mean [MPa]"
-    ]  # fmt: skip
+    ]

@@ -56,7 +56,7 @@ def test_count_of_scenes(tmp_path: Path) -> None:
         (f'{TORQUES}[[figure]]\nname = "a"\nfile = "b/../a.json"\ncolumn = "c"\n', "figure[0].file", "CSV or JSON"),
         (f"{TORQUES}[[figure]]\nnam = 1\n", "figure[0].nam", "docs/studies.md"),
     ],
-)  # fmt: skip
+)
 def test_wrong_keys_are_named(tmp_path: Path, text: str, key: str, said: str) -> None:
     """One line that begins with the file and the key."""
     path = written(tmp_path, text)
@@ -107,7 +107,7 @@ def test_no_toml(tmp_path: Path) -> None:
         ("[parameters]\nload.torque_Nm = [1, 2]\n", "parameters", "did you mean grid?"),
         ("[lhs]\nsamples = 5\n", "lhs", "did you mean latin_hypercube?"),
     ],
-)  # fmt: skip
+)
 def test_lists_of_sections_and_sections_are_told_apart(tmp_path: Path, text: str, key: str, remedy: str) -> None:
     """One pair of brackets too few or too many, and other words for sections: the remedy is what has to be written."""
     with pytest.raises(SceneError) as caught:

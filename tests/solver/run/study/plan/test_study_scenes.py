@@ -28,7 +28,7 @@ def test_names_are_of_the_content(tmp_path: Path) -> None:
     assert [each.name for each in scenes_of(tmp_path, TORQUES.replace("a study", "another"))] == one
     assert [each.name for each in scenes_of(tmp_path, TORQUES.replace("100.0, 200.0", "200.0, 100.0"))] == [
         one[1], one[0], one[2]
-    ]  # fmt: skip
+    ]
     for other in (TORQUES.replace('"check"', '"wear"'), f"{TORQUES}[set]\nsweep.positions = 7\n"):
         assert not set(one) & {each.name for each in scenes_of(tmp_path, other)}
     assert not set(one) & {each.name for each in scenes_of(tmp_path, TORQUES, version="2.0")}

@@ -30,7 +30,7 @@ def test_each_friction_coefficient_has_a_column(scene: Gathering) -> None:
     found = scene.columns([Figure("peak_um", "summary.json", "peak", "frictions", error="estimated_error.peak")])
     assert list(found) == [
         "peak_um (μ = 0)", "peak_um_error (μ = 0)", "peak_um (μ = 0.1)", "peak_um_error (μ = 0.1)"
-    ]  # fmt: skip
+    ]
     assert list(found.values())[:3] == [3.0, 0.1, 4.0] and math.isnan(found["peak_um_error (μ = 0.1)"])
 
 
@@ -59,7 +59,7 @@ def test_what_is_not_there_is_not_a_number(scene: Gathering, tmp_path: Path) -> 
     """No file, no key, no text of a JSON file."""
     (tmp_path / "broken.json").write_text("{")
     figures = [Figure("a", "none.csv", "x"), Figure("b", "summary.json", "x.y"), Figure("c", "broken.json", "x"),
-               Figure("d", "summary.json", "title")]  # fmt: skip
+               Figure("d", "summary.json", "title")]
     assert all(math.isnan(value) for value in scene.columns(figures).values())
     assert scene.columns([Figure("dofs", "summary.json", "dofs")]) == {"dofs": 7.0}
 
@@ -103,7 +103,7 @@ def test_a_link_out_of_the_folder_is_not_followed(tmp_path: Path) -> None:
         '{"rows": [{"a": 1e999}, {"a": -1e999}]}', '{"rows": [{"a": 1%s}]}' % ("0" * 400), '{"rows": [{"a": [1]}]}',
         '{"rows": [NaN, {"a": NaN}]}', "a\n" + "1" * 200_000, "\0",
     ],
-)  # fmt: skip
+)
 def test_forged_tables_have_no_figures(tmp_path: Path, content: str, statistic: str) -> None:
     """What is no table, or no finite number, is NaN, as JSON and as CSV; nothing else is raised."""
     for name in ("forged.json", "forged.csv"):

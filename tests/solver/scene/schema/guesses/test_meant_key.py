@@ -19,7 +19,7 @@ from tests.support.running.scene_effects import BARE
 TERMS = (*GEAR_TERMS, *OTHER_TERMS)
 KEYS = keys_of(Scene)
 SECTIONS = {name for name, field in Scene.model_fields.items() if section_of(field)} | {
-    "material.pinion", "material.wheel", "strength.gauges"}  # fmt: skip
+    "material.pinion", "material.wheel", "strength.gauges"}
 
 
 def problem(key: str, value: Any = 1.0) -> InputProblem:
@@ -43,7 +43,7 @@ def expected(term: Term, section: str) -> list[str]:
     """The keys that a message has to name."""
     gears = [section] if section in ("pinion", "wheel") else ["pinion", "wheel"]
     return [key.replace("gear.", f"{gear}.", 1) for key in term.keys
-            for gear in (gears if key.startswith("gear.") else gears[:1])]  # fmt: skip
+            for gear in (gears if key.startswith("gear.") else gears[:1])]
 
 
 @pytest.mark.parametrize("term", TERMS, ids=lambda term: term.words.split()[0])
@@ -108,7 +108,7 @@ REPORTED = {
     "transient.damping_ratio": "did you mean dynamics.damping_ratio?",
     "teeth": "did you mean pinion.teeth or wheel.teeth?",
     "torque_Nm": "did you mean load.torque_Nm",
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("key", REPORTED)
@@ -128,7 +128,7 @@ def test_reported_words_name_what_was_meant(key: str) -> None:
         "wheel.end_um", "pinion.length_mm", "pinion.tolerance", "pair.start", "xyz",
         "transient.noise", "dynamics.velocity_of_sound_m",
     ],
-)  # fmt: skip
+)
 def test_words_of_no_known_meaning_have_no_hint(key: str) -> None:
     """A word that is near to no key of its section, or to several: no key is named."""
     assert problem(key).remedy == "delete it, or see docs/scene.md"
@@ -149,7 +149,7 @@ def test_words_of_no_known_meaning_have_no_hint(key: str) -> None:
         ("dynamics.series_stiffness_N_per_m", "divide by 1000000"),
         ("wear.pinion_m2_per_N", "multiply by 1000000"), ("wear.pinion_mm3_per_Nm", "divide by 1000"),
     ],
-)  # fmt: skip
+)
 def test_units_are_converted(key: str, then: str) -> None:
     """The key with another unit: what makes its value one in the unit of the scene. 1 lbf·in = 0.1129848 N·m, 1 in =
     25.4 mm, 1 psi = 6894.757 Pa."""

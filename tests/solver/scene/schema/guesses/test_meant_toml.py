@@ -21,7 +21,7 @@ WRITTEN = {
     "quick": ("quotes", 'write "quick"'),
     "True": ("quotes", "write true"), "\u00a05": ("U+00A0", "plain space"), "5 // torque": ("comment", "with #"),
     "25.4/8": ("calculation", "write its result"), "[.5, 1.0]": (".5,", "write 0.5"),
-}  # fmt: skip
+}
 """Value that is no TOML -> what the message must have of what was found, and of the remedy."""
 
 

@@ -29,7 +29,7 @@ def remedy(setting: str) -> str:
         ("mesh.level=standart", '"standard"'), ("mesh.shape=hexaedron", '"hexahedron"'),
         ("skip.off=pictres", '"pictures"'),
     ],
-)  # fmt: skip
+)
 def test_the_value_that_was_meant_is_written(setting: str, written: str) -> None:
     """A word that other programs have for a value, or its name misspelled: the value, as the scene writes it."""
     assert remedy(setting) == f"write {written}"
@@ -69,11 +69,11 @@ def test_limits_of_lists_are_named() -> None:
         (key, str(words["allowed"]), limit)
         for key, field in keys_of(Scene).items() if isinstance(words := field.json_schema_extra, dict)
         for limit in (getattr(part, "max_length", None) for part in field.metadata) if limit
-    ]  # fmt: skip
+    ]
     assert {"strength.gauges.gear", "contact.friction", "wear.report_at_cycles"} <= {key for key, _, _ in limited}
     assert [key for key, allowed, limit in limited if str(limit) not in allowed and key != "pinion.flank_csv"] in (
         [], ["wheel.flank_csv"],
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_limits_of_lists_are_named() -> None:
         ("[50.0, 100.0, 100.0]", "give 100 once"), ("[50.0, 200.0]", "add 100, the torque itself"),
         ("[0.0, 100.0]", "leave out 0, which is not above 0 up to 1000"), ("[100.0, 2000.0]", "leave out 2000"),
     ],
-)  # fmt: skip
+)
 def test_remedies_on_percents_are_not_done_already(percents: str, wanted: str) -> None:
     """100 that is there already is not to be added."""
     assert remedy(f"dynamics.torque_percents={percents}").startswith(wanted)

@@ -176,9 +176,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.archive", "results.drawing", "strength.results", "run", "run.dynamics", "run.strength",
         "run.study.plan", "run.study.results", "run.study.figures",
     ),
-    "cli": (
+    "commands": (
         "meshes", "meshes.mesh", "fem.backend", "fem.parallel", "gears.meshing", "scene.*", "results.tables",
         "results.drawing", "wear", "run.*",
     ),
+    "evolvent": ("commands",),
 }
-"""Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""
+"""Room -> what it may import. "meshes" is evolvent_meshes, "evolvent" its own files, "fem" evolvent.fem."""

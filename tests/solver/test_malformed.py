@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.errors import keys_of

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from evidence.benchmarks.gears.skips import CASES, differences
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.gears import gear_model
 from evolvent.gears.full_gear import WholeGear
 from evolvent.gears.meshing.sector_meshes import sector_meshes

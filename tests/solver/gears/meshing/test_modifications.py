@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent.cli import Exit, main
+from evolvent.commands.app import Exit, main
 from evolvent.gears.meshing.modifications import POINTS, POSITIONS, bearing
 from evolvent.scene.checking.check_report import overview
 from evolvent.scene.checking.scene_warnings import scene_warnings

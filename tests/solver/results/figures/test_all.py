@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from PIL import Image
 
-from evolvent.cli import Exit, main
+from evolvent.commands.app import Exit, main
 from evolvent.results.drawing.offscreen import off_screen
 from evolvent.results.drawing.style import PRESSURE_MAP, friction_colours, sheet, styled
 from evolvent.results.engagement import engagement, engagements

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.dynamics.pair_model import geometric_backlash
 from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.vibration import run_dynamics
@@ -209,7 +209,7 @@ def test_wrong_keys_are_named(setting: str, key: str) -> None:
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide the positions of the excitation: the same response to 1e-4, and one line at the end."""
-    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["dynamics", "demos/he2022_dynamics.toml", "--out", str(tmp_path / "out")]
     for setting in SETTINGS:
         arguments += ["--set", setting]

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.meshing.sector_sizes import sector_size
@@ -272,7 +272,7 @@ def test_check_takes_little_memory() -> None:
     code = """
     import sys
     from pathlib import Path
-    from evolvent.cli import main
+    from evolvent.commands.app import main
     for line in sys.stdin.read().splitlines():
         print("status", main(["check", sys.argv[1], *(part for text in line.split("|") for part in ("--set", text))]))
     print("megabytes", int(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]) / 1e3)
@@ -289,7 +289,7 @@ def test_check_takes_little_memory() -> None:
 @pytest.mark.mpi
 def test_two_ranks_refuse_with_one_message(run_script: Run) -> None:
     """Under mpirun the memory of all ranks on a machine counts; one message, status 2 on all."""
-    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = "run", "demos/yang2022.toml", "--out", "/nowhere/out", "--set", "load.torque_Nm=1e-4"
     done = run_script("-c", code, *arguments, ranks=2)
     assert done.returncode == 2 and done.stderr.count("mesh.level: found") == 1

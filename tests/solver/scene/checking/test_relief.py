@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from tests.support.checkout import ROOT
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.gears.meshing.element_sizes import sector_resolution
 from evolvent.gears.meshing.root_meshes import RootMesh, finer_roots, root_nodes
 from evolvent.gears.meshing.sector_sizes import root_dofs, sector_size

@@ -20,8 +20,8 @@ from enum import IntEnum
 import typer
 
 from evolvent.fem.parallel.mpi_start import is_first, launched, world
+from evolvent.run.stopping import stoppable
 from evolvent.scene.schema.errors import SceneError
-from evolvent.stopping import stoppable
 from evolvent_meshes.errors import EvolventError
 
 

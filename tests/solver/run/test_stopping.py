@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from evidence.robustness.faults import GLANCE, differs, run, started
-from evolvent.stopping import Stopped, stoppable
+from evolvent.run.stopping import Stopped, stoppable
 from tests.support.checkout import ROOT
 
 PLAIN = ("--set", "output.error_bars=false")
@@ -69,7 +69,7 @@ def test_signal_ends_a_computation_outside_python(tmp_path: Path) -> None:
     compiler = ["gcc", "-shared", "-fPIC", "-x", "c", "-o", str(library), "-"]
     subprocess.run(compiler, input=DEAF, text=True, check=True)
     code = (
-        "import ctypes, sys\nfrom evolvent.stopping import stoppable\n"
+        "import ctypes, sys\nfrom evolvent.run.stopping import stoppable\n"
         "with stoppable('; go on later', lambda: print('ended', flush=True)):\n"
         f"    ctypes.CDLL({str(library)!r}).deaf()\n"
     )

@@ -35,7 +35,7 @@ SLOW = (
     + '[set]\npinion.face_width_mm = 25.0\nmesh.level = "quick"\nsweep.positions = 4\noutput.error_bars = false\n'
 )
 """Three scenes in plane strain, a second or two each, on the same gears."""
-CODE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+CODE = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
 
 
 @pytest.mark.slow

@@ -1,94 +1,22 @@
-"""The command line `evolvent`, also `python -m evolvent`: parses arguments, calls the API, returns an exit status.
-
-0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun all ranks take part in the
-commands of `computing.py` and `strength_commands.py`; only rank 0 prints, but a rank that fails alone does, and ends
-all. Rank 0 alone does all else.
-"""
+"""Commands that look at a scene, at a finished run or at records: `check`, `mesh`, `plot`, `wear-coefficient`, `info`.
+Rank 0 alone does them."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from evolvent.computing import (
-    DYNAMICS_EPILOG,
-    EXCITATION_EPILOG,
-    LOADS_EPILOG,
-    RUN_EPILOG,
-    TRANSIENT_EPILOG,
-    dynamics,
-    excitation,
-    loads,
-    run,
-    transient,
-)
-from evolvent.failures import (
-    STATUSES,
-    Exit,
-    flushed,
-    leave,
-    reported,
-    silent_except_on_first,
-    tolerate_terminal_encoding,
-)
-from evolvent.fem.backend.cache_folder import keep_fonts
-from evolvent.fem.parallel.mpi_start import is_first
-from evolvent.options import (
-    Force,
-    LevelOption,
-    NoSkip,
-    Overrides,
-    SceneFile,
-    UsageError,
-    Version,
-    given_number,
-    given_path,
-    usage_message,
-)
+from evolvent.commands.command import Command
+from evolvent.commands.exit import reported
+from evolvent.commands.options import Force, LevelOption, NoSkip, Overrides, SceneFile, given_number, given_path
+from evolvent.commands.scene_argument import loaded_scene, require, require_room
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene_argument import loaded_scene, require, require_room
-from evolvent.strength_commands import FATIGUE_EPILOG, STRENGTH_EPILOG, fatigue, strength
-from evolvent.study_command import STUDY_EPILOG, study
 from evolvent_meshes.files import require_writable, write_bytes
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
-
-SHARED = ("run", "loads", "excitation", "dynamics", "transient", "strength", "fatigue")
-"""The commands that all ranks take part in."""
-app = typer.Typer(
-    name="evolvent",
-    help="Frictional contact of involute gear pairs by finite elements, from a scene file to pictures.",
-    epilog=f"""\b
-Examples:
-  evolvent check demos/yang2022.toml
-  evolvent run demos/yang2022.toml --out out/yang2022 --level quick
-  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022
-  evolvent plot out/yang2022
-
-{STATUSES}""",
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,  # examples keep their lines
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-
-@app.callback()
-def evolvent(version: Version = False) -> None: ...
-
-
-app.command(epilog=RUN_EPILOG)(run)
-app.command(epilog=LOADS_EPILOG)(loads)
-app.command(epilog=EXCITATION_EPILOG)(excitation)
-app.command(epilog=DYNAMICS_EPILOG)(dynamics)
-app.command(epilog=TRANSIENT_EPILOG)(transient)
-app.command(epilog=STRENGTH_EPILOG)(strength)
-app.command(epilog=FATIGUE_EPILOG)(fatigue)
-app.command(epilog=STUDY_EPILOG)(study)
 
 
 def _require_new(out: Path, suffix: str, overwrite: bool) -> None:
@@ -101,7 +29,6 @@ def _require_new(out: Path, suffix: str, overwrite: bool) -> None:
     require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/{example}")
 
 
-@app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")
 def check(
     scene: SceneFile,
     level: LevelOption = None,
@@ -130,7 +57,6 @@ def check(
             typer.echo(f"\nTooth forms: {out}")
 
 
-@app.command(epilog="\b\nExample:\n  evolvent mesh demos/yang2022.toml --out pair.msh --level quick")
 def mesh(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", metavar="FILE.msh", help="The gmsh file to write.", parser=given_path)],
@@ -166,7 +92,6 @@ def mesh(
             typer.echo(f"Warning: {bad_cells(quality)}", err=True)
 
 
-@app.command(epilog="\b\nExample:\n  evolvent plot out/yang2022")
 def plot(
     directory: Annotated[
         Path, typer.Argument(metavar="DIR", help="Where a run has put its results.", parser=given_path)
@@ -182,10 +107,6 @@ def plot(
         typer.echo(f"{len(drawn.written)} pictures in {directory / 'pictures'}")
 
 
-@app.command(
-    "wear-coefficient",
-    epilog="\b\nExample:\n  evolvent wear-coefficient record.csv --force-N 500 --pin-diameter-mm 6 --run-in-m 500",
-)
 def wear_coefficient(
     records: Annotated[
         list[Path], typer.Argument(metavar="RECORD.csv...", help="Columns sliding_distance_m (or _mm, _km) and "
@@ -215,7 +136,6 @@ def wear_coefficient(
             typer.echo("evolvent: warning: the interval reaches below 0, which no K/H can: give more records", err=True)
 
 
-@app.command(epilog="\b\nExample:\n  evolvent info")
 def info() -> None:
     """Print the versions of what a result depends on."""
     with reported():
@@ -224,39 +144,15 @@ def info() -> None:
         typer.echo("\n".join(f"{name:<10} {version or 'not found'}" for name, version in versions().items()))
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command line and returns the exit status. arguments: by default sys.argv[1:]."""
-    given = sys.argv[1:] if arguments is None else list(arguments)
-    try:
-        if not is_first() and given[:1] not in ([name] for name in SHARED):
-            return Exit.DONE
-        if arguments is None:
-            tolerate_terminal_encoding()
-        with silent_except_on_first():
-            keep_fonts()
-            return flushed(_status(given))
-    except BrokenPipeError:
-        return flushed(Exit.PIPE_CLOSED)
-    except OSError as error:  # of help and version, which no command prints
-        return flushed(leave(str(error), Exit.FAILED).exit_code)
+def _looking(name: str, function: Callable[..., None], example: str) -> Command:
+    return Command(name, function, f"\b\nExample:\n  evolvent {name} {example}".rstrip())
 
 
-def _status(given: list[str]) -> int:
-    """The exit status of a command."""
-    try:
-        status = app(args=given or ["--help"], prog_name="evolvent", standalone_mode=False)
-    except UsageError as error:
-        return leave(usage_message(error), Exit.BAD_INPUT).exit_code
-    except typer.Abort:
-        return Exit.FAILED
-    except SystemExit as end:
-        if isinstance(end.__context__, BrokenPipeError):  # click's answer to it
-            return Exit.PIPE_CLOSED
-        return end.code if isinstance(end.code, int) else Exit.FAILED
-    if not given:
-        return Exit.BAD_INPUT  # nothing was asked for; versions of click disagree on the status of the help then
-    return status if isinstance(status, int) else Exit.DONE
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+LOOKING = (
+    _looking("check", check, "demos/yang2022.toml --set pair.centre_distance_mm=93.1"),
+    _looking("mesh", mesh, "demos/yang2022.toml --out pair.msh --level quick"),
+    _looking("plot", plot, "out/yang2022"),
+    _looking("wear-coefficient", wear_coefficient, "record.csv --force-N 500 --pin-diameter-mm 6 --run-in-m 500"),
+    _looking("info", info, ""),
+)
+"""The commands of this file, in the order of the help."""

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import evolvent
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.scene.schema.output import SKIP_NAMES
 from evolvent_meshes.mesh.gmsh_io import read_msh
 from evolvent_meshes.mesh.quality import scaled_jacobians
@@ -30,7 +30,7 @@ FAILING = """
         {body}
     run.run_scene = run_scene
     sys.modules["evolvent.run.scene_run"] = run
-    from evolvent.cli import main
+    from evolvent.commands.app import main
     sys.exit(main(["run", {scene!r}, "--out", {out!r}]))
 """
 STUCK = "from evolvent.contact.newton.snes import NotConverged; raise NotConverged({!r})"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import typer
 
-from evolvent.options import given_percents
+from evolvent.commands.options import given_percents
 from evolvent.scene.schema.dynamics import MOST_TORQUES
 
 

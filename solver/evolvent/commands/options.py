@@ -137,8 +137,20 @@ NoSkip = Annotated[
         help=f"Compute the long way what is skipped; may be repeated. Names: {', '.join(SKIP_NAMES)}.",
     ),
 ]
-TablesFolder = Annotated[
-    Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
+
+
+def results_folder(help_text: str) -> Any:
+    """The type of --out of a command that computes into a folder."""
+    return Annotated[Path, typer.Option("--out", metavar="DIR", help=help_text, parser=given_path)]
+
+
+ResultsFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Where results go.", parser=given_path)]
+Percents = Annotated[
+    Any, typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents)
+]
+"""Torques."""
+PetscOptions = Annotated[
+    str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
 ]
 LevelOption = Annotated[
     str | None,

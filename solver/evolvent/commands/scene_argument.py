@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from evolvent.command_output import warn
 from evolvent.scene.schema.errors import SceneError
 
 if TYPE_CHECKING:
@@ -76,3 +75,9 @@ def require(holds: bool, message: str) -> None:
 def unworn(scene: Scene) -> Scene:
     """The scene without [wear], as these commands solve it: the gears as they are."""
     return scene.model_copy(update={"wear": None})
+
+
+def warn(sentences: Sequence[str]) -> None:
+    """Prints what a command has returned to be read."""
+    for sentence in sentences:
+        typer.echo(f"evolvent: warning: {sentence}", err=True)

@@ -11,10 +11,10 @@ import typer
 
 import evolvent
 import evolvent_meshes
-from evolvent.cli import main
+from evolvent.commands.app import main
+from evolvent.commands.exit import reported
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
-from evolvent.failures import reported
 from evolvent.fem.backend.form_compiler import CompileError
 from evolvent.fem.condensation.mumps import NotPositiveDefinite, OutOfMemory
 from evolvent.gears.solution.certificates import BalanceError, PitchImbalance
@@ -22,7 +22,7 @@ from evolvent_meshes.errors import EvolventError, InputError, ResultError
 from evolvent_meshes.mesh.mesh_data import MeshError
 
 PACKAGES = (evolvent, evolvent_meshes)
-NOT_REPORTED = {"evolvent.stopping.Stopped", "evolvent_meshes.files.NoFile"}
+NOT_REPORTED = {"evolvent.run.stopping.Stopped", "evolvent_meshes.files.NoFile"}
 """A signal, which is a KeyboardInterrupt, and an OSError that every reader turns into an error of its own."""
 STATUSES = {
     NotConverged: 3, SearchError: 3, BalanceError: 3, PitchImbalance: 3, MeshError: 2, NotPositiveDefinite: 2,

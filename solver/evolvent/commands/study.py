@@ -9,10 +9,11 @@ from typing import Annotated
 
 import typer
 
-from evolvent.failures import STATUSES, reported
+from evolvent.commands.command import Command
+from evolvent.commands.exit import STATUSES, reported
+from evolvent.commands.options import Force, LevelOption, Overrides, Quiet, given_count, given_path
+from evolvent.commands.scene_argument import require, with_level
 from evolvent.fem.parallel.mpi_start import world
-from evolvent.options import Force, LevelOption, Overrides, Quiet, given_count, given_path
-from evolvent.scene_argument import require, with_level
 
 MOST_PER_CORE = 4
 """Largest number of worker processes for each core."""
@@ -100,3 +101,7 @@ def _require_room(workers: int) -> None:
     allowed = f"up to {most}, for {cores} cores and {memory / 1e3:.3g} GB of memory"
     many = f"--workers: found {workers}; allowed: {allowed}; remedy: write --workers {min(cores, most)}, or add --force"
     require(workers <= most, many)
+
+
+STUDY = Command("study", study, STUDY_EPILOG)
+"""The command as it is registered."""

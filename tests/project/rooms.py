@@ -88,7 +88,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.meshing", "dynamics", "scene.schema", "scene.schema.guesses",
     ),
     "scene.checking": (
-        "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact", "gears.problem", "gears.meshing",
+        "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears.problem", "gears.meshing",
         "gears.pressure", "dynamics", "strength.fatigue", "scene", "scene.schema",
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
@@ -110,8 +110,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "results.drawing": ("meshes", "meshes.gears", "scene", "results.archive", "results"),
     "results.figures": (
-        "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
-        "scene.checking", "results.archive", "results", "results.tables", "results.fields", "results.drawing",
+        "meshes", "meshes.gears", "gears.sweep", "gears.pressure", "scene", "results.archive", "results",
+        "results.tables", "results.fields", "results.drawing",
     ),
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (

@@ -95,7 +95,7 @@ OTHERS = {
     "fatigue.depths": "[0.0, 0.02, 0.05, 0.1, 0.5, 1.0]", "fatigue.yield_stress_MPa": "800.0",
     "fatigue.tension_factor": "0.5", "fatigue.compression_factor": "0.2", "fatigue.normal_factor": "0.5",
     "fatigue.exponents": "[9.0]", "output.pictures": "false", "output.animation": "false", "output.fields": "false",
-    "output.deformation": "true", "output.error_bars": "false", "output.compare": '"yang2022"',
+    "output.deformation": "true", "output.error_bars": "false",
     "skip.off": '["plane"]',
 }
 CHARTS = {"pinion.csv": "diameter_mm,depth_um\n50,3\n70,5\n", "wheel.csv": "diameter_mm,depth_um\n110,3\n130,5\n"}

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from itertools import starmap
 from pathlib import Path
 
-from evolvent.contact.yang_estimate import LoadFactors, yang_estimate
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level
@@ -178,7 +177,6 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
         pressure("at the pitch point, shortest length", 0.0, shortest),
         pressure("at the start of engagement, mean length", start),
         pressure("at the end of engagement, mean length", end),
-        *(_paper_rows(estimate) if scene.output.compare == "yang2022" else ()),
     ]
 
 
@@ -188,32 +186,6 @@ def _operating_rows(scene: Scene) -> list[Row]:
     if dynamics is None or dynamics.operating_rpm is None:
         return []
     return [_one(f"  varied by vibration at, running {dynamics.coming}", "n", "r/min", 1, dynamics.operating_rpm)]
-
-
-def _paper_rows(estimate: HertzEstimate) -> list[Row]:
-    """Yang et al. 2022, Eq. 4, with and without the load factors of the paper."""
-    factors = LoadFactors()
-    named = f"K = {factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
-    return [
-        _one("Eq. 4 of Yang 2022 with K = 1", "σ_H", "MPa", 1, paper_estimate(estimate, LoadFactors.none())),
-        _one(f"  with {named}", "σ_H", "MPa", 1, paper_estimate(estimate, factors)),
-    ]
-
-
-def paper_estimate(estimate: HertzEstimate, factors: LoadFactors) -> float:
-    """Contact stress by Yang et al. 2022, Eq. 4 [MPa]."""
-    pinion = estimate.pair.pinion
-    return yang_estimate(
-        torque=estimate.pinion_torque,
-        face_width=estimate.pair.face_width,
-        reference_diameter=pinion.reference_diameter,
-        contact_ratio=estimate.pair.transverse_contact_ratio,
-        teeth_ratio=estimate.pair.ratio,
-        base_helix=pinion.base_helix_angle,
-        pressure_angle=pinion.transverse_pressure_angle,
-        modulus=estimate.modulus,
-        factors=factors,
-    )
 
 
 def _wear_rows(wear: WearSection, estimate: HertzEstimate) -> list[Row]:

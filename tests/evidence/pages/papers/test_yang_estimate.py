@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from evidence.pages.papers.yang_estimate import LoadFactors, yang_estimate
 from evolvent import hertz
-from evolvent.contact.yang_estimate import LoadFactors, yang_estimate
 
 STEEL = hertz.contact_modulus(210e3, 0.3, 210e3, 0.3)
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from evolvent.results.figures.lines import at_point
-from evolvent.results.figures.yang import paper_points, paper_position
+from evidence.pages.papers.yang_places import at_point, paper_points, paper_position
 from tests.support.synthetic_run import synthetic_run
 
 

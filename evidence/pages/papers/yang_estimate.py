@@ -7,6 +7,13 @@ from math import pi
 
 import numpy as np
 
+from evidence.checkout import DEMOS
+from evolvent.gears.problem.hertz_estimate import HertzEstimate
+from evolvent.scene.scene import load_scene
+
+PRINTED = 1788.0
+"""Contact stress of the paper's Table 4 [MPa]; Eq. 4 yields another value, with and without its factors."""
+
 
 @dataclass(frozen=True)
 class LoadFactors:
@@ -67,3 +74,30 @@ def yang_estimate(
     sine_cosine = np.sin(pressure_angle) * np.cos(pressure_angle)
     curvature = (teeth_ratio + 1) / teeth_ratio * 2 * np.cos(base_helix) / sine_cosine
     return float(np.sqrt(load * curvature * modulus / pi))
+
+
+def of_pair(estimate: HertzEstimate, factors: LoadFactors) -> float:
+    """Contact stress of a scene's pair by Eq. 4 [MPa]."""
+    pinion = estimate.pair.pinion
+    return yang_estimate(
+        torque=estimate.pinion_torque,
+        face_width=estimate.pair.face_width,
+        reference_diameter=pinion.reference_diameter,
+        contact_ratio=estimate.pair.transverse_contact_ratio,
+        teeth_ratio=estimate.pair.ratio,
+        base_helix=pinion.base_helix_angle,
+        pressure_angle=pinion.transverse_pressure_angle,
+        modulus=estimate.modulus,
+        factors=factors,
+    )
+
+
+def estimates() -> dict[str, float]:
+    """Name -> contact stress of Yang's pair [MPa]: by Eq. 4 with and without load factors, by Hertz at the pitch point
+    on the mean and on the shortest length of contact."""
+    hertz = load_scene(DEMOS / "yang2022.toml").hertz_estimate()
+    return {
+        "eq_4_MPa": of_pair(hertz, LoadFactors()), "eq_4_without_factors_MPa": of_pair(hertz, LoadFactors.none()),
+        "hertz_mean_MPa": float(hertz.peak_pressure(0.0)),
+        "hertz_shortest_MPa": float(hertz.peak_pressure(0.0, hertz.line_lengths[0])),
+    }

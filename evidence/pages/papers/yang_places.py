@@ -1,4 +1,4 @@
-"""Position and points of Yang et al. 2022 (Figs 11 to 13, Table 5) in a run."""
+"""Teeth, position and points of Yang et al. 2022 (Figs 8 to 13, Table 5) in a run."""
 
 from __future__ import annotations
 
@@ -6,8 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.results.figures.lines import line_of
 from evolvent.results.run_data import RunData
 from evolvent_meshes.gears.flank import contact_lines
+
+TEETH = {1: "tooth 1", 0: "tooth 2", -1: "tooth 3"}
+"""Index of a tooth pair over the pitch from φ = 0 -> name of that tooth in the paper."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +35,6 @@ def paper_position(run: RunData) -> int:
     return int(np.argmin(np.abs(np.degrees(run.angles) - 0.4725)))
 
 
-def has_two_lines(run: RunData) -> bool:
-    """Whether teeth 2 and 3 both have a contact line at the paper's position, that of tooth 2 across the pitch line."""
-    lines = {line.tooth: line for line in contact_lines(run.pair, float(run.angles[paper_position(run)]))}
-    return -1 in lines and 0 in lines and min(lines[0].roll_distance) < 0.0 < max(lines[0].roll_distance)
-
-
 def paper_points(run: RunData, k: int) -> list[Point]:
     """Points A to D at position k. A, B and C lie on tooth 2's contact line: halfway from its root end to the pitch
     line, on the pitch line, and halfway to its tip end. D is the middle of tooth 3's line, near the root. The paper
@@ -55,3 +54,9 @@ def paper_points(run: RunData, k: int) -> list[Point]:
         z = z0 + (z1 - z0) * (ξ - ξ0) / (ξ1 - ξ0)
         points.append(Point(name, line.tooth, z, ξ))
     return points
+
+
+def at_point(cut: Slices, point: Point) -> float:
+    """Fitted peak pressure at a point of the contact line [MPa], interpolated between slices; NaN outside the line."""
+    z, _, peak = line_of(cut, point.tooth)
+    return float(np.interp(point.z, z, peak, left=np.nan, right=np.nan)) if len(z) else float("nan")

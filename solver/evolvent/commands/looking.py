@@ -45,7 +45,7 @@ def check(
     """
     with reported():
         loaded = loaded_scene(scene, level, settings, no_skip, warns=False)
-        from evolvent.scene.checking.check_report import overview
+        from evolvent.check.check_report import overview
 
         if out is not None:
             _require_new(out, ".png", overwrite)

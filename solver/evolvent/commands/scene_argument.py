@@ -60,7 +60,7 @@ def require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm | None 
 
     comm: the ranks that take part; None: this process alone, without MPI.
     """
-    from evolvent.scene.checking.problem_size import MEMORY_OF, require_memory
+    from evolvent.check.problem_size import MEMORY_OF, require_memory
 
     if not force:
         require_memory(scene, MEMORY_OF[command], comm)

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
+from evolvent.check.check_report import overview
 from evolvent.commands.app import main
+from evolvent.dynamics.of_scene import backlash_problem, drive_settings, operating_point
 from evolvent.dynamics.pair_model import geometric_backlash
 from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.vibration import run_dynamics
 from evolvent.run.scene_run import run_scene
-from evolvent.scene.checking.check_report import overview
-from evolvent.scene.pair_dynamics import backlash_problem, drive_settings, operating_point
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.gears.gear import GearParameters

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.scene.checking.check_report import overview
+from evolvent.check.check_report import overview
 from evolvent.scene.scene import load_scene, scene_from_text
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import helical_scene, spur_scene

@@ -7,13 +7,9 @@ from collections.abc import Iterable
 from itertools import starmap
 from pathlib import Path
 
-from evolvent.fem.parallel.machine import machine_megabytes
-from evolvent.gears.meshing.element_sizes import elements_per_contact_width
-from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level
-from evolvent.gears.problem.hertz_estimate import HertzEstimate
-from evolvent.scene.checking.form_rows import gear_lines, pair_lines
-from evolvent.scene.checking.planned_tables import planned_tables
-from evolvent.scene.checking.problem_size import (
+from evolvent.check.form_rows import gear_lines, pair_lines
+from evolvent.check.planned_tables import planned_tables
+from evolvent.check.problem_size import (
     counted,
     flank_dofs,
     gigabytes,
@@ -22,8 +18,12 @@ from evolvent.scene.checking.problem_size import (
     sector_sizes,
     strength_megabytes,
 )
-from evolvent.scene.checking.scene_warnings import scene_warnings
-from evolvent.scene.checking.text_table import Row, table
+from evolvent.check.scene_warnings import scene_warnings
+from evolvent.check.text_table import Row, table
+from evolvent.fem.parallel.machine import machine_megabytes
+from evolvent.gears.meshing.element_sizes import elements_per_contact_width
+from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level
+from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.scene.gear_pair import working_angle_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.plain_text import fixed

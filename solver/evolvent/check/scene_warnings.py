@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from evolvent.check.transient_rows import transient_warnings
 from evolvent.gears.meshing.element_sizes import (
     STIFF_ELEMENTS,
     elements_per_contact_width,
@@ -13,15 +14,12 @@ from evolvent.gears.meshing.element_sizes import (
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings, tip_edge_warnings
 from evolvent.gears.meshing.undercut import undercut_warnings
-from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, few_cells
 from evolvent.scene.chart_warnings import chart_warnings
-from evolvent.scene.checking.transient_rows import transient_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dependence import effectless_keys
 from evolvent.scene.vibration_limits import doubtful
-
-FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
 
 
 def scene_warnings(scene: Scene) -> tuple[str, ...]:
@@ -50,7 +48,7 @@ def _expected(scene: Scene) -> Iterator[str]:
         )
     yield from transient_warnings(scene)
     if scene.dynamics is not None:
-        from evolvent.scene.checking.vibration_rows import vibration_warnings  # Numba takes a second to import
+        from evolvent.check.vibration_rows import vibration_warnings  # Numba takes a second to import
 
         yield from vibration_warnings(scene)
     if scene.dynamics is not None or scene.transient is not None:
@@ -60,13 +58,3 @@ def _expected(scene: Scene) -> Iterator[str]:
     yield from tip_edge_warnings(problem)
     if not is_two_level(problem):  # coarse sectors have no modifications
         yield from folding_warnings(problem, sector_resolutions(problem))
-
-
-def coarse_contact(across: float) -> list[str]:
-    """A sentence where fewer elements than `FEWEST_CELLS` lie across the contact, in the median; else none."""
-    return [] if across >= FEWEST_CELLS else [f"{across:.1f} elements across the contact (median): {few_cells()}"]
-
-
-def few_cells() -> str:
-    """The consequence of fewer cells than `FEWEST_CELLS`, and the remedy."""
-    return f"below {FEWEST_CELLS:g}, peak pressures {SCATTER}: {FINER}."

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from evolvent.check import problem_size
+from evolvent.check.problem_size import memory_megabytes, room_problem, strength_megabytes
 from evolvent.commands.app import main
 from evolvent.gears.meshing.element_sizes import sector_resolution
 from evolvent.gears.meshing.root_meshes import RootMesh, finer_roots, root_nodes
 from evolvent.gears.meshing.sector_sizes import root_dofs, sector_size
-from evolvent.scene.checking import problem_size
-from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, strength_megabytes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.gears.member import Member

@@ -12,13 +12,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from evolvent.check import problem_size
+from evolvent.check.check_report import overview
+from evolvent.check.problem_size import memory_megabytes, room_problem, sector_sizes
 from evolvent.commands.app import main
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.meshing.sector_sizes import sector_size
-from evolvent.scene.checking import problem_size
-from evolvent.scene.checking.check_report import overview
-from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, sector_sizes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.gears.member import Member

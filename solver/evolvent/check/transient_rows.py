@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evolvent.dynamics.gear_inertia import equivalent_mass
-from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
+from evolvent.check.planned_cost import most_time_steps, natural_modes, too_many_modes
 from evolvent.dynamics.resolved_vibration import unresolved
+from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
 from evolvent.scene.backlash import unnamed_backlash
-from evolvent.scene.checking.planned_cost import most_time_steps, natural_modes, too_many_modes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import Scene

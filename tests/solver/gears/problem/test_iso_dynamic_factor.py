@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent.dynamics.gear_inertia import equivalent_mass
-from evolvent.dynamics.iso_dynamic_factor import Accuracy, MethodB, coefficients, method_b, running_in, worn_relief
+from evolvent.gears.problem.gear_inertia import equivalent_mass
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, MethodB, coefficients, method_b, running_in, worn_relief
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
-from tests.solver.dynamics.test_iso_stiffness import example_pair, he_pair
+from tests.solver.gears.problem.test_iso_stiffness import example_pair, he_pair
 
 MASS, FORCE = 0.7701e-3, 2412.0  # t, N: He's pair
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from evolvent.check.levels_memory import levels_megabytes
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.gears.meshing.companion_meshes import coarser_levels
 from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH, sector_resolution
@@ -16,7 +17,6 @@ from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.meshing.root_meshes import finer_roots
 from evolvent.gears.meshing.sector_sizes import SectorSize, levelled_sizes, one_mesh_sizes, root_dofs, sector_size
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.scene.checking.levels_memory import levels_megabytes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level

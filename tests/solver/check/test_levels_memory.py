@@ -6,7 +6,7 @@ import pytest
 
 from evidence.benchmarks.gears.whole_runs import FULL, RANKS, RunRow
 from evidence.tables import read_rows
-from evolvent.scene.checking.problem_size import memory_megabytes
+from evolvent.check.problem_size import memory_megabytes
 from evolvent.scene.scene import load_scene
 from tests.support.checkout import ROOT
 

@@ -3,13 +3,13 @@ calls."""
 
 from __future__ import annotations
 
-from evolvent.dynamics.gear_inertia import equivalent_mass
-from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
+from evolvent.check.planned_cost import SWEEPS, shown_time, speeds_time
+from evolvent.dynamics.of_scene import backlash_problem, drive_settings
 from evolvent.dynamics.pair_model import lacking_room
+from evolvent.gears.problem.gear_inertia import equivalent_mass
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
 from evolvent.scene.backlash import unnamed_backlash
-from evolvent.scene.checking.planned_cost import SWEEPS, shown_time, speeds_time
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import backlash_problem, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output

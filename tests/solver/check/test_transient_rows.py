@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from evolvent.check.check_report import overview
+from evolvent.check.planned_cost import too_many_modes
+from evolvent.check.scene_warnings import scene_warnings
+from evolvent.check.transient_rows import natural_frequency, planned_steps, transient_lines
 from evolvent.run.dynamics.transient.transient_run import run_transient
-from evolvent.scene.checking.check_report import overview
-from evolvent.scene.checking.planned_cost import too_many_modes
-from evolvent.scene.checking.scene_warnings import scene_warnings
-from evolvent.scene.checking.transient_rows import natural_frequency, planned_steps, transient_lines
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from tests.support.checkout import ROOT

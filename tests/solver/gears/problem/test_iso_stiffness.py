@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from evolvent.dynamics.iso_stiffness import (
+from evolvent.gears.problem.iso_stiffness import (
     blank_factor,
     flexibility,
     mesh_stiffness,

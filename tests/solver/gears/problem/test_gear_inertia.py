@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from evolvent.dynamics.gear_inertia import equivalent_mass, polar_moment
+from evolvent.gears.problem.gear_inertia import equivalent_mass, polar_moment
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters

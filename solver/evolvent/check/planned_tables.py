@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from itertools import starmap
 
-from evolvent.scene.checking.text_table import Row, table
-from evolvent.scene.checking.transient_rows import STEPS, step_lines, transient_lines
+from evolvent.check.text_table import Row, table
+from evolvent.check.transient_rows import STEPS, step_lines, transient_lines
 from evolvent.scene.scene import GEARS, Scene
 from evolvent.scene.skips import wanted_output
 from evolvent.strength.fatigue.criterion import criteria_of
@@ -20,7 +20,7 @@ def planned_tables(scene: Scene) -> list[str]:
 def _vibration(scene: Scene) -> list[str]:
     if scene.dynamics is None:
         return []
-    from evolvent.scene.checking.vibration_rows import vibration_lines  # Numba takes a second to import
+    from evolvent.check.vibration_rows import vibration_lines  # Numba takes a second to import
 
     return [table("Vibration", starmap(Row, vibration_lines(scene, scene.dynamics)), GEARS)]
 

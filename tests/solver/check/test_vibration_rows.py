@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.scene.checking.check_report import overview
-from evolvent.scene.checking.vibration_rows import vibration_lines
+from evolvent.check.check_report import overview
+from evolvent.check.vibration_rows import vibration_lines
 from evolvent.scene.scene import load_scene
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import spur_scene

@@ -18,7 +18,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from evolvent.dynamics.iso_stiffness import LIGHT, STEEL, mesh_stiffness, single_stiffness
+from evolvent.gears.problem.iso_stiffness import LIGHT, STEEL, mesh_stiffness, single_stiffness
 from evolvent_meshes.gears.pair import GearPair
 
 Surface = Literal["hardened", "through_hardened", "cast_iron"]

@@ -16,7 +16,7 @@ from evolvent.dynamics.of_scene import drive_settings
 from evolvent.dynamics.transient.driven_pair import driven_pair, loaded_as_static, resolved_modes
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.pair_transient import PairTransient
-from evolvent.dynamics.transient.starts.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model

@@ -14,13 +14,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from evolvent.dynamics.bodies.small_system import GearShapes
 from evolvent.dynamics.modes.cyclic_stiffness import CyclicStiffness, Numbers
 from evolvent.dynamics.modes.gear_modes import sector_matrices
 from evolvent.dynamics.modes.mean_load import mean_load
 from evolvent.dynamics.modes.mode_meshes import body_mesh
 from evolvent.dynamics.modes.ring_modes import SectorMatrices, harmonics, phase_of
 from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.dynamics.small_system import GearShapes
 from evolvent.fem.surface import surface_of
 from evolvent.gears.condensed_gear import sector_body
 from evolvent.gears.kinematics import spin

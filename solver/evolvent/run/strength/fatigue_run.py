@@ -152,7 +152,7 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
     ]
 
     def drawn() -> bytes:
-        from evolvent.strength.figures.fatigue import fatigue_picture  # matplotlib takes a second to import
+        from evolvent.strength.results.fatigue_picture import fatigue_picture  # matplotlib takes a second to import
 
         return fatigue_picture(run.scene.title, run.pair, found)
 

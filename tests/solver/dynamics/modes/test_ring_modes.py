@@ -12,7 +12,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.fem.body import Body, Fixed
 from evolvent.fem.condensation.schur_complement import Factor
-from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.gears.condensed_gear import GearBody, matching_cuts
 from evolvent.gears.full_gear import whole_mesh, whole_system
 from evolvent.gears.gear_model import prepare_model

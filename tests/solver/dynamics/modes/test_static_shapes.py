@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent.dynamics.bodies.one_degree import one_degree
-from evolvent.dynamics.bodies.small_system import pair_system
 from evolvent.dynamics.modes.mean_load import mean_load
 from evolvent.dynamics.modes.static_shapes import static_shapes, with_elastic_bodies
 from evolvent.dynamics.of_scene import drive_settings
+from evolvent.dynamics.one_degree import one_degree
+from evolvent.dynamics.small_system import pair_system
 from evolvent.dynamics.transient.driven_pair import driven_pair, resolved_modes
 from evolvent.dynamics.transient.own_frequency import own_frequency
 from evolvent.fem.surface import surface_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evolvent import Body, Fixed, Material
-from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.fem.rigid_modes import rigid_modes
 from evolvent_meshes.shapes.blocks import box, cylinder_2d
 

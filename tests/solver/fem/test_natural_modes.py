@@ -9,8 +9,8 @@ from scipy.linalg import eigh
 from evolvent import Body, Fixed, Freedom, Material, Rigid
 from evolvent.fem.body import Assembled, assemble
 from evolvent.fem.condensation.schur_complement import Factor
-from evolvent.fem.modes.mean_axes import MeanAxes
-from evolvent.fem.modes.natural_modes import NaturalModes, natural_modes
+from evolvent.fem.mean_axes import MeanAxes
+from evolvent.fem.natural_modes import NaturalModes, natural_modes
 from evolvent_meshes.shapes.blocks import rectangle
 
 BAR = Material(210e3, 0.0)

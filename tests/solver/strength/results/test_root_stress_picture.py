@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from evolvent.strength.figures.root_stress import root_stress_figure
+from evolvent.strength.results.root_stress_picture import root_stress_figure
 from evolvent.strength.results.tables import StrengthRow, formula_rows
 from evolvent.strength.standard.root_stress import RootLoad
 from evolvent_meshes.gears.gear import GearParameters

@@ -12,7 +12,7 @@ from evolvent.results.drawing.style import OVER
 from evolvent.strength.fatigue.criterion import DANG_VAN
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads
-from evolvent.strength.figures.fatigue import fatigue_figure
+from evolvent.strength.results.fatigue_picture import fatigue_figure
 from evolvent.strength.results.friction_fatigue import FrictionFatigue
 from tests.support.gear_cases import spur_scene
 

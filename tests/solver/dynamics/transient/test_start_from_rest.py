@@ -10,13 +10,13 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import PchipInterpolator
 
+from evolvent.dynamics.transient.divided_steps import DividedSteps
 from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.pair_state import PairState
 from evolvent.dynamics.transient.pair_step import PairStep
 from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransient
-from evolvent.dynamics.transient.starts.start_from_rest import start_from_rest
+from evolvent.dynamics.transient.start_from_rest import start_from_rest
 from evolvent.dynamics.transient.steady_state import until_steady
-from evolvent.dynamics.transient.step_lengths.divided_steps import DividedSteps
 from evolvent.gears.contact.pair_contact import gear_contact
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch

@@ -18,7 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from evolvent.dynamics.bodies.small_system import SmallSystem
+from evolvent.dynamics.small_system import SmallSystem
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import pytest
 
 from evolvent.contact.transient.time_schemes.scheme_energy import SchemeEnergy
 from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
-from evolvent.dynamics.transient.step_lengths.changed_length import motion_energy, step_error, stretched
+from evolvent.dynamics.transient.changed_length import motion_energy, step_error, stretched
 from evolvent_meshes.arrays import Floats
 
 COUNT = 4

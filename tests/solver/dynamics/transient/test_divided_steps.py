@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from evolvent.dynamics.transient.step_lengths.divided_steps import UNDIVIDED, DividedSteps, StepsTaken, part
+from evolvent.dynamics.transient.divided_steps import UNDIVIDED, DividedSteps, StepsTaken, part
 
 RULES = DividedSteps(tolerance=0.01, most_halvings=3)
 

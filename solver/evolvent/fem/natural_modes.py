@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from scipy.linalg import eigh
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from evolvent.fem.modes.mean_axes import MeanAxes
+from evolvent.fem.mean_axes import MeanAxes
 from evolvent_meshes.arrays import Floats
 
 MOST = 0.3

@@ -17,7 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from evolvent.fem.body import Assembled
-from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.mass_matrix import mass_matrix
 from evolvent_meshes.arrays import Floats
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.dynamics.bodies.one_degree import one_degree
-from evolvent.dynamics.bodies.small_system import GearShapes, SmallSystem, pair_system
+from evolvent.dynamics.one_degree import one_degree
+from evolvent.dynamics.small_system import GearShapes, SmallSystem, pair_system
 
 RADIUS, HUB, RIM = 70.0, 3.0, 4.4
 """Of the base circle [mm], and moments of inertia [t·mm²]."""

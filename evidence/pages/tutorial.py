@@ -17,9 +17,9 @@ from PIL import Image
 
 from evidence.checkout import DOCS
 from evidence.tables import markdown, read_rows, write_rows
+from evolvent.check.check_report import overview
 from evolvent.results.archive.error_bar_data import FigureErrors, plus_minus
 from evolvent.results.drawing.style import palette, reduced
-from evolvent.scene.checking.check_report import overview
 from evolvent.scene.scene import load_scene
 
 KEPT = Path("pictures") / "tutorial"

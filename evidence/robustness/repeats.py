@@ -28,7 +28,7 @@ SHIFTS = (0, 4112)
 """Bytes allocated before all else, no multiple of a cache line."""
 SHIFTED = """import ctypes, sys
 ctypes.CDLL(None).malloc({shift})
-from evolvent.cli import main
+from evolvent.commands.app import main
 sys.exit(main(sys.argv[1:]))
 """
 SMALL = ("mesh.level='quick'", "sweep.positions=8", "output.pictures=false", "output.animation=false")

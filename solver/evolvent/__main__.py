@@ -13,7 +13,7 @@ def main() -> int:
     """Runs the command line and returns the exit status."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _interrupted)
-    from evolvent.cli import main as command_line
+    from evolvent.commands.app import main as command_line
 
     status = command_line()
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is left to be kept

@@ -1,6 +1,13 @@
-"""The rooms of the project, from the top down, with what each may import (tests/project/test_structure.py)."""
+"""The rooms of the project, each behind those that it needs, with what each may import
+(tests/project/test_structure.py)."""
 
 from __future__ import annotations
+
+FLOORS: tuple[tuple[str, ...], ...] = (
+    ("meshes",), ("fem",), ("contact",), ("gears",), ("scene",), ("results",), ("strength", "dynamics", "wear"),
+    ("check",), ("run",), ("commands",), ("evolvent",),
+)
+"""Rooms at the top of the tree, from the lowest floor to the highest."""
 
 ROOMS: dict[str, tuple[str, ...]] = {
     "meshes": (),
@@ -14,7 +21,6 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "fem.backend": ("meshes", "meshes.mesh"),
     "fem": ("meshes", "meshes.mesh", "fem.parallel", "fem.backend"),
     "fem.condensation": ("meshes", "fem.parallel", "fem.backend"),
-    "fem.modes": ("meshes", "fem", "fem.backend"),
     "contact": ("meshes",),
     "contact.search": ("meshes", "fem"),
     "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
@@ -29,8 +35,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "contact.transient.time_schemes": ("meshes",),
     "contact.transient": (
-        "meshes", "fem", "fem.modes", "contact.newton", "contact.problem", "contact.step",
-        "contact.transient.time_schemes",
+        "meshes", "fem", "contact.newton", "contact.problem", "contact.step", "contact.transient.time_schemes",
     ),
     "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),
     "gears.meshing": (
@@ -57,39 +62,11 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "fem.backend", "contact.problem", "contact.step", "gears.problem", "gears", "gears.sweep",
         "gears.pressure",
     ),
-    "dynamics.oscillator": ("meshes", "fem.backend"),
-    "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
-    "dynamics.bodies": ("meshes",),
-    "dynamics": (
-        "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
-        "dynamics.oscillator", "dynamics.bodies",
-    ),
-    "dynamics.modes": (
-        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "fem.modes",
-        "fem.condensation", "contact.nitsche", "gears.problem", "gears.meshing", "gears.two_level", "gears",
-        "dynamics", "dynamics.bodies",
-    ),
-    "dynamics.transient.step_lengths": ("meshes", "contact.transient.time_schemes"),
-    "dynamics.transient": (
-        "meshes", "meshes.gears", "fem.parallel", "contact.newton", "contact.transient.time_schemes",
-        "gears.problem", "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics",
-        "dynamics.modes", "dynamics.transient.step_lengths",
-    ),
-    "dynamics.transient.starts": (
-        "meshes", "contact.transient.time_schemes", "gears", "gears.problem", "gears.sweep",
-        "dynamics.excitation", "dynamics.transient",
-    ),
-    "strength.standard": ("meshes", "meshes.gears"),
-    "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "meshes.gears.modifications", "scene.schema.guesses"),
     "scene": (
         "meshes", "meshes.gears", "meshes.gears.form", "meshes.gears.modifications", "fem", "gears.problem",
-        "gears.meshing", "dynamics", "scene.schema", "scene.schema.guesses",
-    ),
-    "scene.checking": (
-        "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact", "gears.problem", "gears.meshing",
-        "gears.pressure", "dynamics", "strength.fatigue", "scene", "scene.schema",
+        "gears.meshing", "scene.schema", "scene.schema.guesses",
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (
@@ -97,21 +74,52 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "results.error_bars": ("meshes", "results.archive", "results"),
     "results.tables": (
-        "meshes.gears", "gears.pressure", "gears.solution", "scene", "scene.checking", "results.archive", "results",
-        "results.error_bars",
+        "meshes.gears", "gears.pressure", "gears.solution", "scene", "results.archive", "results", "results.error_bars",
     ),
     "results.fields": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears.two_level", "gears",
         "gears.sweep", "gears.pressure", "results.archive", "results",
     ),
+    "results.drawing": ("meshes", "meshes.gears", "scene", "results.archive", "results"),
+    "results.figures": (
+        "meshes", "meshes.gears", "gears.sweep", "gears.pressure", "scene", "results.archive", "results",
+        "results.tables", "results.fields", "results.drawing",
+    ),
+    "strength.standard": ("meshes", "meshes.gears"),
+    "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
     "strength": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "gears.meshing", "gears.ring",
         "gears.two_level", "gears", "gears.sweep",
     ),
-    "results.drawing": ("meshes", "meshes.gears", "scene", "results.archive", "results"),
-    "results.figures": (
-        "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
-        "scene.checking", "results.archive", "results", "results.tables", "results.fields", "results.drawing",
+    "strength.results": (
+        "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "results.drawing",
+        "strength.standard", "strength.fatigue", "strength",
+    ),
+    "dynamics.oscillator": ("meshes", "fem.backend"),
+    "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
+    "dynamics": (
+        "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene.schema", "scene",
+        "dynamics.oscillator", "dynamics.excitation",
+    ),
+    "dynamics.modes": (
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem.parallel", "fem", "fem.condensation",
+        "contact.nitsche", "gears.problem", "gears.meshing", "gears.two_level", "gears", "dynamics",
+    ),
+    "dynamics.transient": (
+        "meshes", "meshes.gears", "fem.parallel", "contact.newton", "contact.transient.time_schemes", "gears.problem",
+        "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics.excitation", "dynamics", "dynamics.modes",
+    ),
+    "dynamics.results": (
+        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive", "results.error_bars",
+        "results.tables", "gears.problem",
+    ),
+    "dynamics.results.transient": (
+        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient", "results.archive",
+        "results.error_bars", "results.tables", "dynamics.results",
+    ),
+    "dynamics.figures": (
+        "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.excitation", "dynamics.oscillator",
+        "dynamics.results.*", "results.drawing", "gears.problem",
     ),
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
@@ -122,63 +130,49 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
         "results.*", "dynamics", "wear", "wear.gears",
     ),
-    "dynamics.results": (
-        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive", "results.error_bars",
-        "results.tables",
+    "check": (
+        "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears.problem", "gears.meshing",
+        "gears.pressure", "dynamics", "strength.fatigue", "scene", "scene.schema",
     ),
-    "dynamics.results.transient": (
-        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient", "results.archive",
-        "results.error_bars", "results.tables", "dynamics.results",
-    ),
-    "dynamics.figures": (
-        "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.excitation", "dynamics.oscillator",
-        "dynamics.results.*", "results.drawing",
-    ),
-    "strength.results": (
-        "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "strength.standard",
-        "strength.fatigue", "strength",
-    ),
-    "strength.figures": ("meshes", "meshes.gears", "results.drawing", "strength.fatigue", "strength.results"),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "dynamics", "dynamics.modes", "dynamics.results.*", "dynamics.figures", "scene",
         "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem",
-        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "scene.checking",
-        "results.archive", "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard",
-        "strength.fatigue",
-        "strength", "strength.results", "strength.figures", "run",
+        "meshes", "meshes.mesh", "meshes.gears", "fem.parallel", "fem.backend", "gears.problem", "gears.meshing",
+        "gears", "gears.sweep", "gears.pressure", "gears.solution", "scene.schema", "scene", "results.archive",
+        "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard", "strength.fatigue",
+        "strength", "strength.results", "run",
     ),
     "run.dynamics": (
         "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
         "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
     ),
     "run.dynamics.transient": (
-        "meshes", "meshes.gears", "contact.transient.time_schemes", "fem.backend", "fem.parallel", "gears.problem",
-        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema",
-        "scene.checking", "results.archive", "results.drawing", "dynamics", "dynamics.modes", "dynamics.transient",
-        "dynamics.transient.step_lengths", "dynamics.transient.starts", "dynamics.results.transient",
-        "dynamics.figures", "run",
+        "meshes", "meshes.gears", "fem.parallel", "fem.backend", "contact.transient.time_schemes", "gears.problem",
+        "gears.meshing", "gears", "gears.sweep", "gears.pressure", "gears.solution", "scene.schema", "scene",
+        "results.archive", "results.drawing", "dynamics", "dynamics.modes", "dynamics.transient",
+        "dynamics.results.transient", "dynamics.figures", "check", "run",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",
         "run.strength",
     ),
     "run.study.results": (
-        "meshes", "meshes.gears", "scene", "scene.checking", "scene.schema", "scene.schema.guesses",
-        "results.archive", "results.tables", "dynamics.results", "strength.results", "run.study.plan",
+        "meshes", "meshes.gears", "scene", "check", "scene.schema", "scene.schema.guesses", "results.archive",
+        "results.tables", "dynamics.results", "strength.results", "run.study.plan",
     ),
     "run.study.figures": ("meshes", "results.drawing", "run.study.results"),
     "run.study": (
-        "meshes", "fem.backend", "gears", "gears.sweep", "dynamics.excitation", "scene", "scene.checking",
-        "results.archive", "results.drawing", "strength.results", "run", "run.dynamics", "run.strength",
-        "run.study.plan", "run.study.results", "run.study.figures",
+        "meshes", "fem.backend", "gears", "gears.sweep", "dynamics.excitation", "scene", "check", "results.archive",
+        "results.drawing", "strength.results", "run", "run.dynamics", "run.strength", "run.study.plan",
+        "run.study.results", "run.study.figures", "dynamics",
     ),
-    "cli": (
+    "commands": (
         "meshes", "meshes.mesh", "fem.backend", "fem.parallel", "gears.meshing", "scene.*", "results.tables",
-        "results.drawing", "wear", "run.*",
+        "results.drawing", "wear", "run.*", "check",
     ),
+    "evolvent": ("commands",),
 }
-"""Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""
+"""Room -> what it may import. "meshes" is evolvent_meshes, "evolvent" its own files, "fem" evolvent.fem."""

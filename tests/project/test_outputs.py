@@ -18,7 +18,7 @@ import pytest
 import pyvista
 
 from evidence.pages.outputs import ARRAYS, DEFORMED, FILES, SECTIONS, described
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.results.tables.summary_rows import PositionRow, ToothRow
 from evolvent.wear.gears.gear_study import BlockRow
 from evolvent.wear.results.report import GearReport, PairReport, WearReport

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from evidence.processes import MPI_AS_ROOT
-from evolvent.cli import app
+from evolvent.commands.app import app
 from tests.support.checkout import PYTHONPATH, ROOT
 from tests.support.run_parts import store
 from tests.support.running.listening import listening, started_mpi, watched

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.errors import keys_of
@@ -111,7 +111,7 @@ def test_malformed_pin_on_disc_records_are_refused(case: str, refused: Refused) 
 @pytest.mark.parametrize("case", OPTIONS)
 def test_malformed_options_are_refused(case: str, refused: Refused, monkeypatch: pytest.MonkeyPatch) -> None:
     """Options and arguments of every command; no machine has the memory for all that can be asked."""
-    monkeypatch.setattr("evolvent.scene.checking.problem_size.machine_megabytes", lambda: 24e3)
+    monkeypatch.setattr("evolvent.check.problem_size.machine_megabytes", lambda: 24e3)
     arguments, key, found, words = OPTIONS[case]
     names = {"{scene}": "scene.toml", "{record}": "record.csv", "{folder}": str(refused.folder), "{large}": "large.csv"}
     if "{large}" in arguments:

@@ -13,8 +13,8 @@ from typing import IO
 
 import pytest
 
-from evolvent.cli import main
-from evolvent.failures import Exit, flushed
+from evolvent.commands.app import main
+from evolvent.commands.exit import Exit, flushed
 from tests.support.checkout import PYTHONPATH, ROOT
 from tests.support.running.fresh_process import NOWHERE
 from tests.support.scene_texts import HE
@@ -84,7 +84,7 @@ def test_output_that_cannot_be_written(words: tuple[str, ...]) -> None:
 def test_printed_text_that_was_not_flushed() -> None:
     """A library's line that is written at the program's end only: the status says that it was not, without a complaint
     of Python's; a status of its own stays where all is written."""
-    program = "import sys; from evolvent.failures import flushed; print('line'); sys.exit(flushed(0))"
+    program = "import sys; from evolvent.commands.exit import flushed; print('line'); sys.exit(flushed(0))"
     with open("/dev/full", "wb") as full:
         done = ran(sys.executable, "-c", program, stdout=full)
     assert (done.returncode, done.stderr) == (1, "")
@@ -112,7 +112,7 @@ HEARD = "signal.signal(signal.SIGINT, signal.default_int_handler)"
 """These tests may run where SIGINT is ignored."""
 
 
-@pytest.mark.parametrize("at", ["evolvent.cli", "typer", "numpy"])
+@pytest.mark.parametrize("at", ["evolvent.commands.app", "typer", "numpy"])
 def test_interrupted_before_it_began(at: str) -> None:
     """SIGINT while modules are imported, of which one turns every exception into another: one line, status 130. No
     command has been looked at by then."""
@@ -159,7 +159,8 @@ def test_names_that_are_no_utf8(command: str, tmp_path: Path) -> None:
 def test_check_needs_no_mpi() -> None:
     """`check` in a process of its own starts no MPI, so that a temporary folder that cannot be written is none of its
     business; a command that computes says so in one line, with status 2."""
-    program = "import sys; from evolvent.cli import main; main(sys.argv[1:]); assert 'mpi4py.MPI' not in sys.modules"
+    started = "import sys; from evolvent.commands.app import main; main(sys.argv[1:])"
+    program = f"{started}; assert 'mpi4py.MPI' not in sys.modules"
     for start in ((sys.executable, "-c", program), EVOLVENT):
         done = ran(*start, "check", "demos/he2022.toml", TMPDIR=NOWHERE)
         assert (done.returncode, done.stderr) == (0, "")

@@ -17,8 +17,8 @@ from mpi4py import MPI
 
 from evidence.checkout import DOCS
 from evidence.tables import Column, Table, write_rows
-from evolvent.dynamics.iso_stiffness import mesh_stiffness, single_stiffness
 from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.iso_stiffness import mesh_stiffness, single_stiffness
 from evolvent.results.face_load import face_load
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows

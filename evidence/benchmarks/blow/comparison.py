@@ -15,7 +15,7 @@ from evidence.benchmarks.blow.calculix import by_calculix, natural_frequencies
 from evidence.benchmarks.blow.problem import ALL, STEEL, WINDOW, Blow, ForceCourse, by_evolvent
 from evidence.tables import Column, Table
 from evolvent.fem.body import Body, Fixed, assemble
-from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.results.drawing import style
 
 BLOWS = Blow(5e-8, 130), Blow(2.5e-8, 260)

@@ -12,10 +12,11 @@ from mpi4py import MPI
 from evidence.benchmarks.motion.motion_row import MotionRow
 from evidence.checkout import DEMOS
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
+from evolvent.dynamics.of_scene import drive_settings
 from evolvent.dynamics.transient.driven_pair import driven_pair, loaded_as_static, resolved_modes
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.pair_transient import PairTransient
-from evolvent.dynamics.transient.starts.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model
@@ -23,7 +24,6 @@ from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import initial_state, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 

@@ -19,6 +19,7 @@ from evidence.benchmarks.accuracy.error_bars import SCENES
 from evidence.benchmarks.motion.motion_row import MotionRow
 from evidence.checkout import DEMOS
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.of_scene import drive_settings, operating_point
 from evolvent.dynamics.pair_model import drive
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.run.dynamics.excitation import computed_excitation
@@ -26,7 +27,6 @@ from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.dynamics.speeds import sweep_at, sweep_list
 from evolvent.run.progress import Progress
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import drive_settings, operating_point
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings

@@ -22,8 +22,8 @@ from evidence.checkout import DEMOS, DOCS
 from evidence.pages.papers.he_runs import FEW, VIBRATION, WEAR, HeRuns, Vibration, read_csv, read_json
 from evidence.pages.papers.kept_runs import kept
 from evidence.pages.papers.kept_runs.kept import Named
-from evolvent.dynamics.gear_inertia import polar_moment
-from evolvent.dynamics.iso_stiffness import mesh_stiffness, single_stiffness
+from evolvent.gears.problem.gear_inertia import polar_moment
+from evolvent.gears.problem.iso_stiffness import mesh_stiffness, single_stiffness
 from evolvent.results.engagement import engagement
 from evolvent.results.run_data import read_run
 from evolvent.scene.scene import Scene, load_scene

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from evidence.pages.papers.yang_estimate import estimates
 from evidence.pages.papers.yang_figures import level_figures
 from evidence.tables import markdown
 from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH, LEVELS_PER_WIDTH
@@ -56,4 +57,4 @@ def points(docs: Path) -> str:
         for name, unit in (("transmission_error", "um"), ("efficiency", "percent")):
             value, bar = f[f"{side}_{name}_{unit}"], f[f"{side}_{name}_bar_{unit}"]
             bars[f"{side}_{name}"] = plus_minus(value, bar, 2)
-    return POINTS.read_text(encoding="utf-8").rstrip().format(**f, **bars)
+    return POINTS.read_text(encoding="utf-8").rstrip().format(**f, **bars, **estimates())

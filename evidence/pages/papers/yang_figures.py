@@ -14,14 +14,12 @@ import numpy as np
 from evidence.checkout import DOCS
 from evidence.pages.papers.kept_runs import kept
 from evidence.pages.papers.kept_runs.kept import Named
+from evidence.pages.papers.yang_places import TEETH, at_point, paper_points, paper_position
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import between, pooled_peaks
-from evolvent.results.drawing.teeth import YANG
 from evolvent.results.engagement import Engagement, crossing, engagement, largest_peak
-from evolvent.results.figures.lines import at_point
 from evolvent.results.figures.stress import relative_change
 from evolvent.results.figures.trend import trends
-from evolvent.results.figures.yang import paper_points, paper_position
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
@@ -37,7 +35,7 @@ def figures(run: RunData) -> Named:
     low, high = int(order[0]), int(order[-1])
     yield from _beside_hertz(run, low)
     yield from _over_the_engagement(engagement(run, low), engagement(run, high))
-    for trend in trends([engagement(run, low), engagement(run, high)], list(YANG)):
+    for trend in trends([engagement(run, low), engagement(run, high)], list(TEETH)):
         for name, values in (("largest", trend.largest), ("average", trend.average)):
             yield f"tooth_{2 - trend.tooth}_{name}_change_percent", 100.0 * float(values[-1] / values[0] - 1.0)
     yield from _points(run, low, high)

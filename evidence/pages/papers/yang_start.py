@@ -17,7 +17,7 @@ import numpy as np
 from evidence.checkout import DEMOS, DOCS
 from evidence.pages.papers.kept_runs.kept import Named
 from evidence.pages.papers.kept_runs.runs import Runs, read
-from evolvent.scene.pair_dynamics import drive_settings
+from evolvent.dynamics.of_scene import drive_settings
 from evolvent.scene.scene import load_scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 

@@ -16,11 +16,11 @@ from scipy.optimize import brentq
 from evidence.robustness.campaigns.random_scenes import Draw, random_scene
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, paper_law
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
-from evolvent.dynamics.gear_inertia import equivalent_mass, polar_moment
 from evolvent.dynamics.oscillator.mesh_law import stepped_side
 from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
+from evolvent.gears.problem.gear_inertia import equivalent_mass, polar_moment
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 

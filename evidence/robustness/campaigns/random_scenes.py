@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from evolvent.scene.checking.problem_size import sector_sizes
+from evolvent.check.problem_size import sector_sizes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, SceneError, scene_from_values
 

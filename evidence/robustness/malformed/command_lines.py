@@ -12,7 +12,7 @@ from typing import Any
 
 import typer.main
 
-from evolvent.cli import app
+from evolvent.commands.app import app
 
 SOUND: Mapping[str, str] = {
     "SCENE.toml": "scene.toml", "STUDY.toml": "study.toml", "RECORD.csv...": "record.csv", "DIR": "run",

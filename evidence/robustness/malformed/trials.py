@@ -23,8 +23,8 @@ from pathlib import Path
 from evidence.checkout import DEMOS
 from evidence.robustness.malformed.command_lines import CommandLine, Parameter, command_lines
 from evidence.robustness.malformed.wrong_values import SPOILT, WRONG, scene_settings, spoilt_at_random, study_lines
-from evolvent.cli import main
-from evolvent.failures import Exit
+from evolvent.commands.app import main
+from evolvent.commands.exit import Exit
 
 PATIENCE = 20.0
 """Seconds after which a command hangs."""

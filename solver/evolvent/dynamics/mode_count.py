@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from evolvent.dynamics.gear_inertia import TONNE_PER_MM3
+from evolvent.gears.problem.gear_inertia import TONNE_PER_MM3
 from evolvent_meshes.gears.gear import GearParameters
 
 

@@ -8,13 +8,13 @@ from typing import Literal
 
 import numpy as np
 
-from evolvent.dynamics.bodies.one_degree import OneDegree, one_degree
-from evolvent.dynamics.bodies.small_system import GearShapes, pair_system
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
-from evolvent.dynamics.gear_inertia import equivalent_mass
+from evolvent.dynamics.one_degree import OneDegree, one_degree
 from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side, with_chords
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent.dynamics.small_system import GearShapes, pair_system
+from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent_meshes.arrays import Floats

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from mpi4py import MPI
 
 from evolvent.dynamics.modes.static_shapes import with_elastic_bodies
+from evolvent.dynamics.of_scene import operating_point
 from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.fem.parallel.ranks import on_first
@@ -23,7 +24,6 @@ from evolvent.results.archive.scene_files import SCENE_FILES, write_scene
 from evolvent.run.context import RunContext
 from evolvent.run.progress import CONDENSING, MESHING
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import operating_point
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import with_deflected_flanks

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from evolvent.dynamics.gear_inertia import polar_moment
+from evolvent.gears.problem.gear_inertia import polar_moment
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.gears.pair import GearPair
 

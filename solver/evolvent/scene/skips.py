@@ -239,6 +239,5 @@ def wanted_output(scene: Scene) -> OutputSection:
         animation=asked.animation or drawn,
         fields=asked.fields or "fields" in off,
         error_bars=asked.error_bars or "error-bars" in off,
-        compare=asked.compare,
         deformation=asked.deformation,
     )

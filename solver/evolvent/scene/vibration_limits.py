@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from evolvent.dynamics.gear_inertia import equivalent_mass, solid_moment, teeth_moment
-from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
+from evolvent.gears.problem.gear_inertia import equivalent_mass, solid_moment, teeth_moment
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
 from evolvent.gears.problem.load_limits import rounded_down, rounded_up
 from evolvent.scene.inertias import KG_M2, moments_of_inertia
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection

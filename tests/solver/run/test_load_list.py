@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.cli import Exit, main
+from evolvent.commands.app import Exit, main
 from evolvent.gears import load_list as gear_loads
 from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.tables.load_table import LoadRow

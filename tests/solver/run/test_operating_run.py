@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evolvent.cli import Exit
+from evolvent.commands.app import Exit
 from evolvent.results.archive.archive import Archive
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint

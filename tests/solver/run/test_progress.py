@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.run.output import whereabouts
 from evolvent.run.progress import Progress
 from tests.support.checkout import ROOT

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
@@ -276,7 +276,7 @@ def test_mesh_does_not_replace_an_existing_file(
 ALONE = """
 import sys
 from mpi4py import MPI
-from evolvent.cli import main
+from evolvent.commands.app import main
 if MPI.COMM_WORLD.rank == 0:
     from evolvent.run import redraw
     from evolvent.results.drawing.picture_files import Picture

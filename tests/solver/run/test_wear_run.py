@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evolvent.cli import Exit
+from evolvent.commands.app import Exit
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.results.archive.archive import Archive
 from evolvent.scene.scene import load_scene

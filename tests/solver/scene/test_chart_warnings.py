@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.cli import SHARED, Exit, main
+from evolvent.commands.app import COMMANDS, Exit, main
 from evolvent.run.study.results.check_figures import run_check
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET, spur_scene
@@ -38,11 +38,11 @@ def test_check_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", SHARED)
+@pytest.mark.parametrize("command", [each.name for each in COMMANDS if each.parallel])
 def test_every_computing_command_says_it(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Problem: a chart over 80 % of the face; every command of SHARED takes part. Right: each says on stderr that the
+    """Problem: a chart over 80 % of the face; every computing command takes part. Right: each says on stderr that the
     chart is extended, and a run's summary.json beside its figures."""
     percent = [f"--percent={PERCENT[command]}"] if command in PERCENT else []
     out = tmp_path / "out"

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from evidence.benchmarks.gears.skips import CASES, differences
-from evolvent.cli import main
+from evolvent.check.check_report import overview
+from evolvent.commands.app import main
 from evolvent.gears import gear_model
 from evolvent.gears.full_gear import WholeGear
 from evolvent.gears.meshing.sector_meshes import sector_meshes
@@ -23,7 +24,6 @@ from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.archive.archive import fingerprint
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.scene_run import run_scene
-from evolvent.scene.checking.check_report import overview
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.output import SkipName

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from evolvent.scene.checking.check_report import overview
+from evolvent.check.check_report import overview
 from evolvent.scene.scene import scene_from_text
 from evolvent.strength.standard.virtual_gear import virtual_contact_ratio, virtual_gear
 from tests.support.scene_texts import HE

@@ -7,8 +7,8 @@ import re
 
 import pytest
 
-from evolvent.scene.checking.check_report import overview
-from evolvent.scene.pair_dynamics import drive_settings
+from evolvent.check.check_report import overview
+from evolvent.dynamics.of_scene import drive_settings
 from evolvent.scene.scene import scene_from_text
 from tests.support.scene_texts import HE
 

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from evolvent.scene.checking.check_report import overview
+from evolvent.check.check_report import overview
 from evolvent.scene.scene import scene_from_text
 from evolvent.strength.standard.critical_section import rack_of, root_section
 from tests.support.scene_texts import HE, without

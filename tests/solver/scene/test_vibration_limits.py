@@ -7,9 +7,9 @@ import re
 
 import pytest
 
-from evolvent.dynamics.gear_inertia import polar_moment, solid_moment, teeth_moment
-from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
-from evolvent.scene.checking.scene_warnings import scene_warnings
+from evolvent.check.scene_warnings import scene_warnings
+from evolvent.gears.problem.gear_inertia import polar_moment, solid_moment, teeth_moment
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent.scene.vibration_limits import doubtful, impossible

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evolvent.cli import Exit, main
+from evolvent.commands.app import Exit, main
 from evolvent.wear import PinOnDisc, Record, coefficient
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.csv_tables import TableError

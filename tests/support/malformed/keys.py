@@ -27,6 +27,9 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
         YANG, ["load.torque_Nmm=250e3"], "load.torque_Nmm", "250000", "mean load.torque_Nm? Then divide by 1000; else",
     ),
     "misspelled section in the place of one": (YANG.replace("[load]", "[laod]"), [], "laod", "torque_Nm", "mean load?"),
+    "comparison with a study": (
+        YANG, ['output.compare="yang2022"'], "output.compare", '"yang2022"', "comparison with Yang et al. 2022 is on",
+    ),
     "unknown to all": (YANG, ["mesh.xyzzy=1"], "mesh.xyzzy", "1", "delete it"),
     # wrong type
     "text for a number": (YANG, ['load.torque_Nm="250 Nm"'], "load.torque_Nm", '"250 Nm"', "write the number alone"),

@@ -34,7 +34,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.gears import gear_model
 from evolvent.gears.contact.pair_contact import GearContact

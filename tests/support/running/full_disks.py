@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 
 from evidence.robustness.faults import SETTINGS
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.results.archive.archive import ArchiveError, read_arrays
 
 THEIRS = ("out/photo.png", "out/pictures/photo.png", "out/results/measured.npz")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from evolvent.dynamics.bodies.small_system import GearShapes
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.dynamics.small_system import GearShapes
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 

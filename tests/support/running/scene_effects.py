@@ -8,14 +8,14 @@ from functools import cache
 
 import numpy as np
 
-from evolvent.dynamics.gear_inertia import equivalent_mass
-from evolvent.dynamics.iso_dynamic_factor import method_b
+from evolvent.check.check_report import overview
+from evolvent.dynamics.of_scene import drive_settings, operating_point
+from evolvent.gears.problem.gear_inertia import equivalent_mass
+from evolvent.gears.problem.iso_dynamic_factor import method_b
 from evolvent.run.dynamics.speeds import map_list, sweep_list
 from evolvent.run.dynamics.vibration import accuracy
 from evolvent.run.strength.strength_run import NO_DEEP_TEETH
-from evolvent.scene.checking.check_report import overview
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import drive_settings, operating_point
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent.scene.skips import wanted_output
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
@@ -95,7 +95,7 @@ OTHERS = {
     "fatigue.depths": "[0.0, 0.02, 0.05, 0.1, 0.5, 1.0]", "fatigue.yield_stress_MPa": "800.0",
     "fatigue.tension_factor": "0.5", "fatigue.compression_factor": "0.2", "fatigue.normal_factor": "0.5",
     "fatigue.exponents": "[9.0]", "output.pictures": "false", "output.animation": "false", "output.fields": "false",
-    "output.deformation": "true", "output.error_bars": "false", "output.compare": '"yang2022"',
+    "output.deformation": "true", "output.error_bars": "false",
     "skip.off": '["plane"]',
 }
 CHARTS = {"pinion.csv": "diameter_mm,depth_um\n50,3\n70,5\n", "wheel.csv": "diameter_mm,depth_um\n110,3\n130,5\n"}

@@ -12,7 +12,7 @@ from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_state import PairState
 from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransient
-from evolvent.dynamics.transient.starts.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.gears.gear_model import GearModel
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 

@@ -1,6 +1,6 @@
 """A condensed body with inertia: its modes at the contact functionals, and what the other modes add at once.
 
-With F̂ all forces in the mean axes (fem/modes/mean_axes.py), modes W of frequencies ω and q their amplitudes,
+With F̂ all forces in the mean axes (fem/mean_axes.py), modes W of frequencies ω and q their amplitudes,
 
     P u = P R δ + Φ_P q + (Ψ K⁻¹ Ψᵀ − Φ_P Ω⁻² Φ_Pᵀ) f + ... ,    Ψ = P − (P R) m⁻¹ RᵀM ,    Φ_P = Ψ W .
 
@@ -16,8 +16,8 @@ import numpy as np
 
 from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem
-from evolvent.fem.modes.mean_axes import MeanAxes
-from evolvent.fem.modes.natural_modes import NaturalModes, natural_modes
+from evolvent.fem.mean_axes import MeanAxes
+from evolvent.fem.natural_modes import NaturalModes, natural_modes
 from evolvent_meshes.arrays import Floats, Ints
 
 

@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.iso_dynamic_factor import MethodB
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive
 from evolvent.dynamics.results.response import BranchRow, speed_of
 from evolvent.dynamics.results.response_errors import VibrationErrors
+from evolvent.gears.problem.iso_dynamic_factor import MethodB
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from evolvent_meshes.arrays import Floats
 

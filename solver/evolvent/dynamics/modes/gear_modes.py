@@ -13,7 +13,7 @@ from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces, Numbers
 from evolvent.dynamics.modes.ring_modes import RingModes, SectorMatrices, harmonics, modes_below, ring_modes
 from evolvent.fem.body import Body
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
-from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.fem.parallel.memory import return_free_memory
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.condensed_gear import GearBody, SectorParts, sector_body, sector_parts

@@ -14,17 +14,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from evolvent.dynamics.bodies.small_system import GearShapes
-from evolvent.dynamics.gear_inertia import TONNE_PER_MM3, refuse_less_than_the_body
 from evolvent.dynamics.modes.cyclic_stiffness import CyclicStiffness, Numbers
 from evolvent.dynamics.modes.gear_modes import sector_matrices
 from evolvent.dynamics.modes.mean_load import mean_load
 from evolvent.dynamics.modes.mode_meshes import body_mesh
 from evolvent.dynamics.modes.ring_modes import SectorMatrices, harmonics, phase_of
 from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.dynamics.small_system import GearShapes
 from evolvent.fem.surface import surface_of
 from evolvent.gears.condensed_gear import sector_body
 from evolvent.gears.kinematics import spin
+from evolvent.gears.problem.gear_inertia import TONNE_PER_MM3, refuse_less_than_the_body
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member

@@ -44,7 +44,7 @@ class TorsionalModel:
     ground_damping: float = 0.0
     """c_g, of the shafts against the ground [N·s/mm]."""
     bore_offset: float = 0.0
-    """How far the bores are ahead of s under the static load [mm]: elastic bodies, see `dynamics.bodies.one_degree`."""
+    """How far the bores are ahead of s under the static load [mm]: elastic bodies, see `dynamics.one_degree`."""
     bore_compliance: float = 0.0
     """By how much more [mm/N] where the mesh force is below the load."""
 

@@ -8,11 +8,11 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from evolvent.dynamics.iso_dynamic_factor import MethodB
 from evolvent.dynamics.oscillator.response import Response, response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
 from evolvent.dynamics.results.response_errors import VibrationErrors
+from evolvent.gears.problem.iso_dynamic_factor import MethodB
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text, without_nan
 from evolvent_meshes.arrays import Floats

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from evolvent.dynamics.gear_inertia import TONNE_PER_MM3, refuse_less_than_the_body
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.dynamics.modes.mode_meshes import mode_mesh
 from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.problem.gear_inertia import TONNE_PER_MM3, refuse_less_than_the_body
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.gears.member import Member

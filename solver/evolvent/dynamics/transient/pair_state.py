@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.contact.transient.time_schemes.scheme_energy import SchemeEnergy
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme
+from evolvent.dynamics.transient.changed_length import motion_energy, step_error, stretched
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
 from evolvent.dynamics.transient.step_balance import StepEnd
-from evolvent.dynamics.transient.step_lengths.changed_length import motion_energy, step_error, stretched
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump, previous_jumps
@@ -103,5 +103,5 @@ class SolvedStep:
 
     @property
     def error(self) -> float:
-        """Estimated (step_lengths/changed_length.py)."""
+        """Estimated (changed_length.py)."""
         return step_error(self.step.step, self.motion, self.energy)

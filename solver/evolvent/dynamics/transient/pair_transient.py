@@ -1,5 +1,5 @@
 """A gear pair over time at constant nominal speed, from one position of a mesh period to the next, in one time step or
-in equal parts of it (step_lengths/divided_steps.py).
+in equal parts of it (divided_steps.py).
 
 Positions and parts repeat with the mesh, so that search, compliance and modes of each are kept and used again: from the
 second mesh period on a step is the solution of its contact system alone.
@@ -16,13 +16,13 @@ import numpy as np
 from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
 from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
 from evolvent.dynamics.transient.certificates import WITHIN, certify_step
+from evolvent.dynamics.transient.divided_steps import UNDIVIDED, DividedSteps, StepsTaken, part
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.nodal_sums import NodalSums
 from evolvent.dynamics.transient.pair_state import PairState, SolvedStep
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
 from evolvent.dynamics.transient.step_balance import Residuals, StepBalance, StepEnergies, stored_energy
-from evolvent.dynamics.transient.step_lengths.divided_steps import UNDIVIDED, DividedSteps, StepsTaken, part
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.dynamics.transient.divided_steps import StepsTaken
 from evolvent.dynamics.transient.pair_state import PairState
 from evolvent.dynamics.transient.pair_transient import PairMoment, PairTransient
 from evolvent.dynamics.transient.step_balance import NOTHING_KNOWN, Residuals, StepEnergies
-from evolvent.dynamics.transient.step_lengths.divided_steps import StepsTaken
 from evolvent_meshes.arrays import Floats
 
 

@@ -6,7 +6,7 @@ Momentum. With the forces p that the nodal sums give on modes and ψ, the state 
 
 Energy. That of the motion has an exact balance in time steps under any forces, with the work of the contact forces by
 the trapezoidal rule (contact/transient/time_schemes/scheme_energy.py), also of a step of another length than the one
-before (step_lengths/changed_length.py), and of one at whose end alone, or at whose begin alone, the damping of the mesh
+before (changed_length.py), and of one at whose end alone, or at whose begin alone, the damping of the mesh
 acts, with the work of each end's own damping. There is no exact one between this work and what the flanks store: other
 nodes and points are in contact at the end of a step than at its begin, the nominal rotation moves them on in between,
 and the normals are those before deflection. Over a step

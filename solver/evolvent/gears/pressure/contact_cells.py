@@ -14,6 +14,8 @@ FEWEST_FITTED = 1.5
 are up to 2.6 times Hertz' for the same load, with more they lie within 15 % (away from tip edges and relief starts)."""
 SCATTER = "may be off by 15 % and more and are for orientation only"
 """What warnings say of peak pressures on fewer elements."""
+FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
+"""Remedy of few elements."""
 HEIGHT_TOLERANCE = 1e-6
 """Nodes within this height [mm] are of one row."""
 
@@ -32,3 +34,13 @@ def cells_across(
     arc = roll_lengths[row] ** 2 / (2.0 * base_radius)
     elements = (int(row.sum()) - 1) / order
     return float(np.quantile(known, share) * elements / np.ptp(arc)) if len(known) else float("nan")
+
+
+def coarse_contact(across: float) -> list[str]:
+    """A sentence where fewer elements than `FEWEST_CELLS` lie across the contact, in the median; else none."""
+    return [] if across >= FEWEST_CELLS else [f"{across:.1f} elements across the contact (median): {few_cells()}"]
+
+
+def few_cells() -> str:
+    """The consequence of fewer cells than `FEWEST_CELLS`, and the remedy."""
+    return f"below {FEWEST_CELLS:g}, peak pressures {SCATTER}: {FINER}."

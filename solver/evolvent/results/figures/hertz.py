@@ -7,10 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from evolvent.contact.yang_estimate import LoadFactors
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.gears.pressure.contact_slices import Slices
-from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.results.drawing.style import (
     AT_ZONE_END,
@@ -21,19 +19,14 @@ from evolvent.results.drawing.style import (
     PINION,
     dot_size,
     foot,
-    note,
     sheet,
 )
-from evolvent.results.drawing.teeth import compares_yang
 from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import cells_across, few_cells_across
 from evolvent.results.run_data import RunData
-from evolvent.scene.checking.check_report import paper_estimate
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats
 
-YANG_PRINTS = 1788.0
-"""Contact stress of Yang et al. 2022, Table 4 [MPa]; their Eq. 4 yields another value, with and without its factors."""
 HERTZ = "#c98a1b"
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 
@@ -100,12 +93,11 @@ def _largest(axes: Axes, run: RunData, index: int) -> None:
 
 
 def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:
-    """Bars of a study's estimates, of Hertz at the pitch point, and of computed pressures."""
+    """Bars of Hertz at the pitch point and of computed pressures."""
     estimate = run.scene.hertz_estimate()
     near = np.isfinite(peak) & (np.abs(ξ) < 0.25 * run.pair.pinion.normal_module)
     shortest = float(estimate.peak_pressure(0.0, estimate.line_lengths[0]))
     rows = [
-        *(_yang_estimates(estimate) if compares_yang(run.scene) else ()),
         ("Hertz at the pitch point,\nmean line length", float(estimate.peak_pressure(0.0)), HERTZ),
         ("Hertz at the pitch point,\nshortest line", shortest, HERTZ),
         *([("computed near the\npitch line, median", float(np.median(peak[near])), PINION)] if near.any() else ()),
@@ -124,16 +116,3 @@ def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -
     axes.xaxis.set_major_locator(MaxNLocator(5))
     axes.set(xlabel="contact stress [MPa]", xlim=(0.0, 1.3 * max(row[1] + more for row, more in zip(rows, known))))
     axes.grid(axis="y", visible=False)
-    if compares_yang(run.scene):
-        axes.axvline(YANG_PRINTS, color=INK, linestyle="--", linewidth=1.0)
-        note(axes, f"dashed: {YANG_PRINTS:.0f} MPa, as the paper prints it", 0.0, 1.05)
-
-
-def _yang_estimates(estimate: HertzEstimate) -> list[tuple[str, float, str]]:
-    """Label, value [MPa] and colour of Eq. 4 of Yang et al. 2022 with and without its load factors."""
-    factors = LoadFactors()
-    named = f"{factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
-    return [
-        ("Yang Eq. 4, $K_A K_v K_α K_β$ =\n" + named, paper_estimate(estimate, factors), "#b9bec7"),
-        ("Yang Eq. 4, K = 1", paper_estimate(estimate, LoadFactors.none()), "#b9bec7"),
-    ]

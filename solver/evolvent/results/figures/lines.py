@@ -1,7 +1,4 @@
-"""Pressure along contact lines, and at single points over the friction coefficient.
-
-The points are those of the path of contact by ISO 21771, or those of a published study.
-"""
+"""Pressure along contact lines, and at points of the path of contact (ISO 21771) over the friction coefficient."""
 
 from __future__ import annotations
 
@@ -15,9 +12,8 @@ from matplotlib.figure import Figure
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import pooled_peaks
 from evolvent.results.drawing.style import FAINT, foot, friction_colours, sheet
-from evolvent.results.drawing.teeth import compares_yang, short_name
+from evolvent.results.drawing.teeth import short_name
 from evolvent.results.figures.flank import FACE, envelope
-from evolvent.results.figures.yang import Point, has_two_lines, paper_points, paper_position
 from evolvent.results.run_data import RunData
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats, Ints
@@ -53,21 +49,17 @@ class Series:
 
 
 def has_lines(run: RunData) -> bool:
-    """Whether there are contact lines to draw; in a comparison with a study, those of its teeth."""
-    return has_two_lines(run) if compares_yang(run.scene) else bool(_teeth_at(run, shown_position(run)))
+    """Whether there are contact lines to draw."""
+    return bool(_teeth_at(run, shown_position(run)))
 
 
 def shown_position(run: RunData) -> int:
-    """Index of the position to draw: that of the study, or that at which most slices have a fitted peak."""
-    if compares_yang(run.scene):
-        return paper_position(run)
+    """Index of the position to draw, at which most slices have a fitted peak."""
     return int(np.argmax([np.isfinite(each[0].cut.peak).sum() for each in run.positions]))
 
 
 def _teeth_at(run: RunData, k: int) -> list[int]:
-    """Tooth pairs with fitted peaks at position k, the leading pair first; teeth 2 and 3 of Yang's study."""
-    if compares_yang(run.scene):
-        return [0, -1]
+    """Tooth pairs with fitted peaks at position k, the leading pair first."""
     teeth = {tooth.tooth for tooth in run.positions[k][0].teeth}
     return [t for t in sorted(teeth, reverse=True) if len(line_of(run.positions[k][0].cut, t)[0])][:MOST_LINES]
 
@@ -89,12 +81,12 @@ def line_pressure_over_z(run: RunData) -> Figure:
             ax.axvline(place, color=FAINT, linestyle=":", linewidth=1.0)
             height = 0.97 - 0.05 * row
             ax.text(place, height, name, transform=ax.get_xaxis_transform(), ha="center", fontweight="bold")
-        ax.set_title(short_name(run, tooth), fontsize=10)
+        ax.set_title(short_name(tooth), fontsize=10)
         ax.set(xlabel=FACE, xlim=(-0.5 * run.pair.face_width, 0.5 * run.pair.face_width))
     axes[0].set_ylabel("peak pressure across the line [MPa]")
     axes[0].set_ylim(bottom=0.0)
     axes[-1].legend(title="friction coefficient", loc="lower center", ncols=2)
-    legend = [] if compares_yang(run.scene) or not shown else [_points_named(shown)]
+    legend = [_points_named(shown)] if shown else []
     foot(figure, *legend, "Not drawn where a contact line bears on a tip edge.")
     return figure
 
@@ -116,8 +108,6 @@ def _points_named(names: Collection[str]) -> str:
 
 def _marks(run: RunData, k: int, tooth: int) -> list[tuple[str, float]]:
     """Names and heights z [mm] of the points on a tooth pair's contact line at position k."""
-    if compares_yang(run.scene):
-        return [(point.name, point.z) for point in paper_points(run, k) if point.tooth == tooth]
     z, ξ, _ = line_of(run.positions[k][0].cut, tooth)
     order = np.argsort(ξ)
     inside = [(name, at) for name, at in path_points(run.pair) if len(ξ) > 1 and ξ.min() < at < ξ.max()]
@@ -144,17 +134,11 @@ def points_over_friction(run: RunData) -> Figure:
     """Figure of the pressure at points over μ, with a table of their changes."""
     order = np.argsort(run.frictions)
     μ = np.array(run.frictions)[order]
-    heads: tuple[str, ...]
-    if compares_yang(run.scene):
-        k, heads = paper_position(run), ("tooth", "z\n[mm]", "ξ\n[mm]")
-        series = [_of_study(run, k, point, order) for point in paper_points(run, k)]
-        title = f"Pressure at the points A to D over the friction coefficient, φ = {np.degrees(run.angles[k]):.2f}°"
-    else:
-        series, heads = _of_path(run, order), ("d\n[mm]", "ξ\n[mm]")
-        title = "Pressure at points of the path of contact over the friction coefficient, mid-face"
+    series = _of_path(run, order)
     spread = {each.name: float(np.ptp(each.values)) for each in series}
     ranked = sorted(spread, key=lambda name: -spread[name])
     subtitle = "Largest change with friction: " + ", ".join(f"{n} {spread[n]:.0f} MPa" for n in ranked) + "."
+    title = "Pressure at points of the path of contact over the friction coefficient, mid-face"
     figure = sheet(title, subtitle, (10.6, 6.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.35, 1.0))
     above, below, side = (figure.add_subplot(grid[place]) for place in ((0, 0), (1, 0), (slice(None), 1)))
@@ -166,16 +150,9 @@ def points_over_friction(run: RunData) -> Figure:
     above.legend(ncols=len(series), loc="upper right")
     below.axhline(0.0, color=FAINT, linewidth=1.0)
     below.set(xlabel="friction coefficient μ", ylabel=f"change from μ = {μ[0]:g} [%]")
-    _table(side, series, heads)
-    if not compares_yang(run.scene):
-        foot(figure, _points_named([each.name for each in series]))
+    _table(side, series)
+    foot(figure, _points_named([each.name for each in series]))
     return figure
-
-
-def _of_study(run: RunData, k: int, point: Point, order: Ints) -> Series:
-    """Pressure at a point of the study. order: friction coefficients, ascending."""
-    values = np.array([at_point(run.positions[k][i].cut, point) for i in order])
-    return Series(point.name, (f"{2 - point.tooth}", signed(point.z, 2), signed(point.roll_distance, 2)), values)
 
 
 def _points_to_follow(pair: GearPair) -> list[tuple[str, float]]:
@@ -203,18 +180,18 @@ def _of_path(run: RunData, order: Ints) -> list[Series]:
 
 def has_path_points(run: RunData) -> bool:
     """Whether a point has a pressure at all friction coefficients."""
-    return compares_yang(run.scene) or bool(_of_path(run, np.arange(len(run.frictions))))
+    return bool(_of_path(run, np.arange(len(run.frictions))))
 
 
-def _table(axes: Axes, series: Sequence[Series], heads: tuple[str, ...]) -> None:
-    """Table of the points and of the change of their pressures. heads: heads of the coordinates' columns."""
+def _table(axes: Axes, series: Sequence[Series]) -> None:
+    """Table of the points and of the change of their pressures."""
     axes.axis("off")
     spread = [float(np.ptp(each.values)) for each in series]
     rows = [
         [each.name, *each.cells, f"{size:.1f}", f"{100.0 * size / each.values.min():.1f} %"]
         for each, size in zip(series, spread)
     ]
-    columns = ["point", *heads, "max − min\n[MPa]", "of min"]
+    columns = ["point", "d\n[mm]", "ξ\n[mm]", "max − min\n[MPa]", "of min"]
     table = axes.table(rows, colLabels=columns, loc="center", cellLoc="center", edges="horizontal")
     table.auto_set_font_size(False)
     table.set_fontsize(9)
@@ -230,12 +207,6 @@ def line_of(cut: Slices, tooth: int) -> tuple[Floats, Floats, Floats]:
     return cut.z[here], cut.roll_distance[here], peak[here]
 
 
-def at_point(cut: Slices, point: Point) -> float:
-    """Fitted peak pressure at a point of the contact line [MPa], interpolated between slices; NaN outside the line."""
-    z, _, peak = line_of(cut, point.tooth)
-    return float(np.interp(point.z, z, peak, left=np.nan, right=np.nan)) if len(z) else float("nan")
-
-
 def _lines_subtitle(run: RunData, k: int, teeth: Sequence[int]) -> str:
     """Subtitle: range of the pressure along each line, and its mean change with friction."""
     lowest, highest = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
@@ -244,6 +215,6 @@ def _lines_subtitle(run: RunData, k: int, teeth: Sequence[int]) -> str:
         (z, _, peak), (places, _, other) = (line_of(run.positions[k][i].cut, tooth) for i in (lowest, highest))
         _, first, second = np.intersect1d(np.round(z, 9), np.round(places, 9), return_indices=True)
         change = f" ({signed(100 * (other[second].mean() / peak[first].mean() - 1))} %)" if highest != lowest else ""
-        texts.append(f"{short_name(run, tooth)}, {peak.min():.0f} to {peak.max():.0f} MPa{change}")
+        texts.append(f"{short_name(tooth)}, {peak.min():.0f} to {peak.max():.0f} MPa{change}")
     more = f", in brackets the mean change to μ = {run.frictions[highest]:g}" if highest != lowest else ""
     return f"At μ = {run.frictions[lowest]:g}{more}: " + "; ".join(texts) + "."

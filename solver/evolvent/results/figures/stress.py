@@ -76,14 +76,14 @@ def tooth_stress(run: RunData) -> Figure:
     curves = engagements(run)
     subtitle = _teeth_subtitle(run, smoothed(run, curves))
     figure = sheet("Contact stress of the teeth over a pitch of pinion rotation", subtitle, (11.6, 6.6))
-    teeth = shown_teeth(run, curves)
+    teeth = shown_teeth(curves)
     grid = figure.subplots(2, len(teeth), sharex=True, height_ratios=(1.5, 1.0), squeeze=False)
     for column, tooth in enumerate(teeth):
         top, below = grid[0, column], grid[1, column]
         members = [c.tooth == tooth for c in curves]
         _curves(top, run, curves, members, tooth)
         _change(below, run, smoothed(run, curves), members, tooth)
-        top.set_title(long_name(run, tooth), fontsize=10)
+        top.set_title(long_name(tooth), fontsize=10)
         below.set_xlabel("pinion rotation φ [°]")
     grid[0, 0].set_ylabel(STRESS)
     grid[1, 0].set_ylabel(f"change from μ = {_lowest(curves).friction:g} [%]")
@@ -234,11 +234,11 @@ def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
     for k in range(int(np.floor(low / pitch)), int(np.ceil(high / pitch)) + 1):
         if low < k * pitch < high:
             axes.axvline(k * pitch, color=FAINT, linestyle=":", linewidth=1.0)
-    for tooth in shown_teeth(run, [curve]):
+    for tooth in shown_teeth([curve]):
         left, right = max(low, tooth * pitch), min(high, (tooth + 1) * pitch)
         if right - left > 0.35 * pitch:
             across = axes.get_xaxis_transform()
-            axes.text(0.5 * (left + right), 0.03, short_name(run, tooth), transform=across, ha="center", fontsize=9)
+            axes.text(0.5 * (left + right), 0.03, short_name(tooth), transform=across, ha="center", fontsize=9)
 
 
 def _largest(axes: Axes, curve: Engagement, bar: float) -> None:
@@ -270,8 +270,8 @@ def _teeth_subtitle(run: RunData, curves: Sequence[Engagement]) -> str:
         return f"One friction coefficient, μ = {curves[0].friction:g}."
     lowest, highest = _lowest(curves), _highest(curves)
     parts = []
-    for tooth in shown_teeth(run, curves):
+    for tooth in shown_teeth(curves):
         _, change = relative_change(highest, lowest, highest.tooth == tooth)
         low, high = (signed(100 * float(bound)) for bound in (np.nanmin(change), np.nanmax(change)))
-        parts.append(f"{short_name(run, tooth)} by {low} to {high} %")
+        parts.append(f"{short_name(tooth)} by {low} to {high} %")
     return f"From μ = {lowest.friction:g} to {highest.friction:g} the stress changes: " + ", ".join(parts) + "."

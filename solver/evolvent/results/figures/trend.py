@@ -20,15 +20,15 @@ from evolvent_meshes.arrays import Bools, Floats
 def friction_trend(run: RunData) -> Figure:
     """Figure of mean and maximum contact stress of the teeth over μ, and of their changes (Fig. 10)."""
     curves = sorted(engagements(run), key=lambda c: c.friction)
-    each_tooth, μ = trends(curves, shown_teeth(run, curves)), [c.friction for c in curves]
-    change = [(short_name(run, t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in each_tooth]
+    each_tooth, μ = trends(curves, shown_teeth(curves)), [c.friction for c in curves]
+    change = [(short_name(t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in each_tooth]
     changes = ", ".join(f"{name} by {signed(percent)} %" for name, percent in change)
     subtitle = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
     figure = sheet("Contact stress over the friction coefficient", subtitle, (10.4, 6.4))
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
     for trend, colour, marker in zip(each_tooth, TEETH, "osD^"):
         for column, values in enumerate((trend.average, trend.largest)):
-            grid[0, column].plot(μ, values, color=colour, marker=marker, label=long_name(run, trend.tooth))
+            grid[0, column].plot(μ, values, color=colour, marker=marker, label=long_name(trend.tooth))
             grid[1, column].plot(μ, 100.0 * (values / values[0] - 1.0), color=colour, marker=marker)
         ends = [(μ[k], trend.largest[k]) for k in np.flatnonzero(trend.at_zone_end)]
         grid[0, 1].plot(*zip(*ends), color=colour, **{**HOLLOW, "marker": marker}) if ends else None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, FINER, SCATTER, few_cells
 from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.relief_kinks import largest_kink
@@ -13,7 +13,6 @@ from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
 from evolvent.scene.chart_warnings import chart_warnings
-from evolvent.scene.checking.scene_warnings import FINER, few_cells
 from evolvent.scene.plain_text import brief, signed
 
 WORST_CELL = 0.05

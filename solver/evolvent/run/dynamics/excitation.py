@@ -12,6 +12,7 @@ from mpi4py import MPI
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, loaded_mesh, mesh_of
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.of_scene import check_positions
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
 from evolvent.dynamics.results.design_load import excitation_facts, write_excitation_facts
 from evolvent.dynamics.results.tables import EXCITATION, excitation_rows, harmonic_rows, write_tables
@@ -28,7 +29,6 @@ from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.dynamics.written_files import EXCITATION_PICTURE, OF_DYNAMICS, OF_EXCITATION
 from evolvent.run.folder_checks import require_unfinished, writing_to
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
-from evolvent.scene.pair_dynamics import check_positions
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import EvolventError

@@ -9,8 +9,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.iso_dynamic_factor import Accuracy, MethodB, method_b
-from evolvent.dynamics.iso_stiffness import outside_range
+from evolvent.dynamics.of_scene import check_backlash, check_positions, drive_settings
 from evolvent.dynamics.oscillator.response import MESHES, Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
@@ -33,6 +32,8 @@ from evolvent.dynamics.results.torque_map import write_torque_map
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, MethodB, method_b
+from evolvent.gears.problem.iso_stiffness import outside_range
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.excitation import (
@@ -49,7 +50,6 @@ from evolvent.run.dynamics.vibration_errors import SWEEPS, errors_over_speed, vi
 from evolvent.run.dynamics.written_files import OF_DYNAMICS, PORTRAITS, VIBRATION_PICTURE, WATERFALL
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.run.start import with_bodies
-from evolvent.scene.pair_dynamics import check_backlash, check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output

@@ -12,6 +12,7 @@ from mpi4py import MPI
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
+from evolvent.gears.pressure.contact_cells import coarse_contact
 from evolvent.gears.solution.certificates import PitchImbalance, certify, certify_pitch
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import initial_state
@@ -27,7 +28,6 @@ from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.chart_warnings import chart_warnings
-from evolvent.scene.checking.scene_warnings import coarse_contact
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.fatigue import FatigueSection
@@ -152,7 +152,7 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
     ]
 
     def drawn() -> bytes:
-        from evolvent.strength.figures.fatigue import fatigue_picture  # matplotlib takes a second to import
+        from evolvent.strength.results.fatigue_picture import fatigue_picture  # matplotlib takes a second to import
 
         return fatigue_picture(run.scene.title, run.pair, found)
 

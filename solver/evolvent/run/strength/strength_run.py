@@ -133,7 +133,9 @@ def _written(scene: Scene, loads: Sequence[RootLoad], found: Sequence[FrictionRo
     strains = list(gauge_rows(_scene_gauges(scene), found, scene.materials()))
 
     def drawn() -> bytes:
-        from evolvent.strength.figures.root_stress import root_stress_picture  # matplotlib takes a second to import
+        from evolvent.strength.results.root_stress_picture import (
+            root_stress_picture,  # matplotlib takes a second to import
+        )
 
         return root_stress_picture(scene.title, found, rows)
 

@@ -10,6 +10,7 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.misaligned_mesh import misaligned_figures
+from evolvent.dynamics.of_scene import check_positions
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.load_list import LoadList
@@ -20,7 +21,6 @@ from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPosition
 from evolvent.run.study.plan.shared_gears import meshes, own_torque
 from evolvent.run.study.results.scene_record import SceneRecord, read_record
 from evolvent.run.study.scene_task import SceneTask, solve
-from evolvent.scene.pair_dynamics import check_positions
 from evolvent_meshes.errors import EvolventError
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
+from evolvent.check.problem_size import MEMORY_OF, memory_megabytes, require_memory
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.load_list import LoadList
 from evolvent.results.archive.archive import ArchiveError
@@ -24,7 +25,6 @@ from evolvent.run.study.plan.shared_gears import condensed_problem, meshes, own_
 from evolvent.run.study.plan.study_file import Computation
 from evolvent.run.study.results.check_figures import run_check
 from evolvent.run.study.results.scene_record import SceneRecord, Status, read_record, write_record
-from evolvent.scene.checking.problem_size import MEMORY_OF, memory_megabytes, require_memory
 from evolvent.scene.scene import Scene
 from evolvent.strength.results.tables import STRENGTH
 from evolvent_meshes.errors import EvolventError, InputError, ResultError

@@ -24,12 +24,6 @@ class OutputSection(SceneSection):
     error_bars: bool = key(
         "solve a coarse companion too, for error bars of the engineering figures", "true or false", default=True
     )
-    compare: Literal["yang2022"] | None = key(
-        "a published study whose figures stand beside the results, and whose names its teeth and points have",
-        '"yang2022"',
-        "delete the key for results by themselves",
-        default=None,
-    )
 
 
 SkipName = Literal["plane", "friction-terms", "one-pitch", "one-sector", "far-teeth", "window",

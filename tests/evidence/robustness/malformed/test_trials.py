@@ -13,9 +13,11 @@ from evidence.robustness.malformed import command_lines
 from evidence.robustness.malformed.command_lines import CommandLine, Parameter
 from evidence.robustness.malformed.summary import malformed_summary
 from evidence.robustness.malformed.trials import SPOILABLE, Outcome, Trial, Verdict, outcomes, trials
-from evolvent import cli
-from evolvent.options import SceneFile, TablesFolder
+from evolvent.commands import app as cli
+from evolvent.commands.options import ResultsFolder, SceneFile
 
+PARALLEL = [each.name for each in cli.COMMANDS if each.parallel]
+"""The commands that compute a scene."""
 SAMPLED = 37
 """Of so many trials one is made here; all of them by `python -m evidence.robustness malformed`."""
 
@@ -28,13 +30,13 @@ def test_every_command_is_tried() -> None:
     assert all(content not in SPOILABLE.values() for _, content in filter(None, (each.spoilt for each in all_trials)))
     counts = Counter(each.command for each in all_trials)
     assert set(counts) == set(typer.main.get_command(cli.app).commands)  # type: ignore[attr-defined]
-    assert min(counts[name] for name in (*cli.SHARED, "check", "mesh", "study")) >= 200
+    assert min(counts[name] for name in (*PARALLEL, "check", "mesh", "study")) >= 200
 
 
 def test_a_sample_is_refused(tmp_path: Path) -> None:
     """One of 37 trials, which takes all commands in: refused with status 2 and a message, no file written."""
     sample = list(trials())[::SAMPLED]
-    assert {each.command for each in sample} >= {*cli.SHARED, "check", "mesh", "study"}
+    assert {each.command for each in sample} >= {*PARALLEL, "check", "mesh", "study"}
     failed = [found for found in outcomes(tmp_path / "tried", sample) if found.verdict is not Verdict.REFUSED]
     assert failed == []
 
@@ -45,7 +47,7 @@ def added(monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
     app = typer.Typer(add_completion=False)
 
     @app.command()
-    def anything(scene: SceneFile, out: TablesFolder) -> None:
+    def anything(scene: SceneFile, out: ResultsFolder) -> None:
         """Write a file, whatever the scene."""
         out.mkdir(parents=True, exist_ok=True)
 

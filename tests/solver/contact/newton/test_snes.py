@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from evolvent.contact.newton.snes import solve
-from evolvent.stopping import Stopped, stoppable
+from evolvent.run.stopping import Stopped, stoppable
 from evolvent_meshes.arrays import Floats
 
 

@@ -12,7 +12,7 @@ from evolvent.contact.problem.condensed_body import CondensedBody, condense_bodi
 from evolvent.contact.step.step_system import StepSystem
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.fem.boundary import Freedom
-from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.mass_matrix import mass_matrix
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import rectangle
 

@@ -13,10 +13,10 @@ from PIL import Image
 
 from evolvent.dynamics.figures.field_of_action import FieldOfAction
 from evolvent.dynamics.results.transient.cases import CasePressures, TransientCase
+from evolvent.dynamics.transient.divided_steps import StepsTaken
 from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.dynamics.transient.step_balance import Residuals, StepEnergies
-from evolvent.dynamics.transient.step_lengths.divided_steps import StepsTaken
 from evolvent.gears.pressure.line_peaks import has_peak, pooled_peaks
 from evolvent.gears.pressure.pitch_pressure import PitchPressure
 from tests.support.synthetic_run import synthetic_run

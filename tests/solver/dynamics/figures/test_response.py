@@ -13,11 +13,11 @@ from matplotlib.figure import Figure
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.figures.response import ISO, response_figure
-from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
 from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
 from evolvent.dynamics.pair_model import DriveSettings, drive
 from evolvent.dynamics.results.response import branch_rows, responses
 from evolvent.dynamics.results.response_errors import Vibration, VibrationErrors, vibration_errors
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
 from evolvent.scene.gear_problem import gear_problem
 from tests.support.gear_cases import spur_scene
 

@@ -9,15 +9,15 @@ import pytest
 from mpi4py import MPI
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.fem.body import Body, Fixed
 from evolvent.fem.condensation.schur_complement import Factor
-from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.gears.condensed_gear import GearBody, matching_cuts
 from evolvent.gears.full_gear import whole_mesh, whole_system
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.kinematics import turn
+from evolvent.gears.problem.gear_inertia import polar_moment
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member

@@ -7,19 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent.dynamics.bodies.one_degree import one_degree
-from evolvent.dynamics.bodies.small_system import pair_system
-from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.modes.mean_load import mean_load
 from evolvent.dynamics.modes.static_shapes import static_shapes, with_elastic_bodies
+from evolvent.dynamics.of_scene import drive_settings
+from evolvent.dynamics.one_degree import one_degree
+from evolvent.dynamics.small_system import pair_system
 from evolvent.dynamics.transient.driven_pair import driven_pair, resolved_modes
 from evolvent.dynamics.transient.own_frequency import own_frequency
 from evolvent.fem.surface import surface_of
 from evolvent.gears.kinematics import spin
 from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.gear_inertia import polar_moment
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member

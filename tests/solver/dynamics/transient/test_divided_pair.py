@@ -11,12 +11,12 @@ import pytest
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.transient.certificates import Unbalanced
+from evolvent.dynamics.transient.divided_steps import DividedSteps
 from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.pair_state import SolvedStep
 from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransient
 from evolvent.dynamics.transient.steady_state import until_steady
 from evolvent.dynamics.transient.step_balance import StepBalance, StepEnd
-from evolvent.dynamics.transient.step_lengths.divided_steps import DividedSteps
 from evolvent_meshes.arrays import Floats
 from tests.support.running.transient_pairs import POSITIONS, moments, moving, started
 

@@ -27,9 +27,9 @@ from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_step import SearchedContact
 from evolvent.dynamics.transient.pair_transient import PairTransient
-from evolvent.dynamics.transient.starts.quasi_static_start import BEFORE, quasi_static_starts
+from evolvent.dynamics.transient.quasi_static_start import BEFORE, quasi_static_starts
 from evolvent.fem.body import Body
-from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.gears.condensed_gear import GearBody, matching_cuts
 from evolvent.gears.full_gear import whole_mesh, whole_system
 from evolvent.gears.gear_model import GearModel, prepare_model

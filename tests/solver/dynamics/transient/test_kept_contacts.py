@@ -17,7 +17,7 @@ from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_step import SearchedContact
 from evolvent.dynamics.transient.pair_transient import MovingMoment, PairState, PairTransient
-from evolvent.dynamics.transient.starts.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch

@@ -19,7 +19,7 @@ from evolvent.dynamics.modes.mode_meshes import mode_mesh
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransient
-from evolvent.dynamics.transient.starts.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
 from evolvent_meshes.gears.pair import GearPair

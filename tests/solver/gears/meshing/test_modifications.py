@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent.cli import Exit, main
+from evolvent.check.check_report import overview
+from evolvent.check.scene_warnings import scene_warnings
+from evolvent.commands.app import Exit, main
 from evolvent.gears.meshing.modifications import POINTS, POSITIONS, bearing
-from evolvent.scene.checking.check_report import overview
-from evolvent.scene.checking.scene_warnings import scene_warnings
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.gears.flank import contact_lines
 from evolvent_meshes.gears.pair import GearPair

@@ -1,6 +1,6 @@
 """Sizes of sectors, counted without meshing, where tips are not sharp, bores are held in part, and bodies have webs.
 
-Those of other gears: tests/solver/scene/checking/test_problem_size.py.
+Those of other gears: tests/solver/check/test_problem_size.py.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from evolvent.cli import Exit, main
+from evolvent.commands.app import Exit, main
 from evolvent.results.archive.archive import Archive, ArchiveError
 from evolvent.results.archive.run_cost import FILE, Cost, Timings, read_cost, write_cost
 from evolvent.results.archive.run_folder import RunFolder

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.results.drawing.tooth_form import key_diameters, tooth_form_figure
 from evolvent.scene.scene import scene_from_text
 from evolvent_meshes.gears.member import Member

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -22,10 +20,8 @@ from tests.support.synthetic_run import synthetic_run
 
 @pytest.fixture(scope="module")
 def run() -> RunData:
-    """Yang's helical pair, total contact ratio 3.0, without the comparison with the study."""
-    study = synthetic_run("contact.friction=[0.0, 0.1, 0.2]")
-    output = study.scene.output.model_copy(update={"compare": None})
-    return replace(study, scene=study.scene.model_copy(update={"output": output}))
+    """Yang's helical pair, total contact ratio 3.0."""
+    return synthetic_run("contact.friction=[0.0, 0.1, 0.2]")
 
 
 def below(figure: Figure) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from evolvent.cli import Exit, main
+from evolvent.commands.app import Exit, main
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
 from evolvent.results.archive.run_folder import RunFolder

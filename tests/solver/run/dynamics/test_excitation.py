@@ -175,7 +175,7 @@ def test_foreign_files_stay(tmp_path: Path) -> None:
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide the positions: the same table to 1e-6, and one line at the end."""
-    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["excitation", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--percent", "50,100"]
     for setting in SETTINGS:
         arguments += ["--set", setting]

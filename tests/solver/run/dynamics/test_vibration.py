@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from evolvent.cli import main
+from evolvent.check.check_report import overview
+from evolvent.commands.app import main
+from evolvent.dynamics.of_scene import backlash_problem, drive_settings, operating_point
 from evolvent.dynamics.pair_model import geometric_backlash
 from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.vibration import run_dynamics
 from evolvent.run.scene_run import run_scene
-from evolvent.scene.checking.check_report import overview
-from evolvent.scene.pair_dynamics import backlash_problem, drive_settings, operating_point
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.gears.gear import GearParameters
@@ -209,7 +209,7 @@ def test_wrong_keys_are_named(setting: str, key: str) -> None:
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide the positions of the excitation: the same response to 1e-4, and one line at the end."""
-    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["dynamics", "demos/he2022_dynamics.toml", "--out", str(tmp_path / "out")]
     for setting in SETTINGS:
         arguments += ["--set", setting]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep

@@ -185,7 +185,7 @@ def test_friction_reverses_at_the_pitch_point(out: Path) -> None:
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide gears and positions: the same values to 1e-6, and one line at the end."""
-    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["fatigue", str(out / "fatigue.toml"), "--out", str(tmp_path), "--set", "output.pictures=false"]
     done = run_script("-c", code, *arguments, ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]

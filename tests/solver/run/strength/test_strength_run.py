@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
@@ -172,7 +172,7 @@ def test_gauges_without_their_values_are_refused() -> None:
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide the positions: the same stresses to 1e-6, and one line at the end."""
-    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["strength", "demos/zhang2023.toml", "--out", str(tmp_path / "out")]
     for setting in SETTINGS:
         arguments += ["--set", setting]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.scene.scene import Scene, SceneError, load_scene, scene_from_text
 from evolvent.scene.schema.dependence import dependents, effectless_keys
 from evolvent.scene.schema.errors import keys_of

@@ -14,14 +14,14 @@ from evolvent.dynamics.modes.ring_modes import harmonics
 from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.dynamics.transient.back_flanks import require_backlash
 from evolvent.dynamics.transient.certificates import certify_motion
+from evolvent.dynamics.transient.divided_steps import UNDIVIDED, DividedSteps
 from evolvent.dynamics.transient.driven_pair import LEAST, driven_pair, loaded_as_static, resolved_modes
 from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_transient import PairState, PairTransient
-from evolvent.dynamics.transient.starts.quasi_static_start import quasi_static_starts
-from evolvent.dynamics.transient.starts.start_from_rest import start_from_rest
+from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
+from evolvent.dynamics.transient.start_from_rest import start_from_rest
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
-from evolvent.dynamics.transient.step_lengths.divided_steps import UNDIVIDED, DividedSteps
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel, Mesher, Preparer

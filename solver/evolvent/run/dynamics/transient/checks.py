@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from evolvent.check.planned_cost import too_many_modes
 from evolvent.dynamics.results.transient.beginning import TRANSIENT_START
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE, START_PICTURE
@@ -12,7 +13,6 @@ from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.folder_checks import require_unfinished
 from evolvent.scene.backlash import unnamed_backlash
-from evolvent.scene.checking.planned_cost import too_many_modes
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import SceneError

@@ -21,10 +21,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from evolvent.dynamics.transient.divided_steps import StepsTaken
 from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.dynamics.transient.step_balance import Residuals, StepEnergies
-from evolvent.dynamics.transient.step_lengths.divided_steps import StepsTaken
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import ArchiveError, arrays_bytes, fingerprint, read_arrays
 from evolvent.results.archive.position_arrays import archived_result, result_arrays

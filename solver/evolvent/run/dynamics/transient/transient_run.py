@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
+from evolvent.dynamics.of_scene import check_positions, drive_settings
 from evolvent.dynamics.results.transient.beginning import beginnings, start_rows, write_start
 from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures, elements_across
 from evolvent.dynamics.results.transient.errors import MovingCompanion, case_errors
@@ -19,6 +20,7 @@ from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
+from evolvent.gears.pressure.contact_cells import coarse_contact
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.transient.cases import PairCases, PairMeshes
@@ -35,9 +37,7 @@ from evolvent.run.dynamics.transient.moving_companion import companion_of
 from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.chart_warnings import chart_warnings
-from evolvent.scene.checking.scene_warnings import coarse_contact
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output

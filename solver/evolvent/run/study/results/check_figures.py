@@ -6,11 +6,11 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from evolvent.check.check_report import overview
+from evolvent.check.problem_size import memory_megabytes, sector_sizes
+from evolvent.check.scene_warnings import scene_warnings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
-from evolvent.scene.checking.check_report import overview
-from evolvent.scene.checking.problem_size import memory_megabytes, sector_sizes
-from evolvent.scene.checking.scene_warnings import scene_warnings
 from evolvent.scene.scene import Scene
 
 CHECK, REPORT = "check.json", "check.txt"

@@ -118,6 +118,8 @@ OTHER_TERMS: tuple[Term, ...] = (
     Term("vtk vtu paraview output.results field_output", ("output.fields",), source=FEM),
     Term("displacement displacements deformed deformations stresses", ("output.deformation",), source=FEM),
     Term("uncertainty error_estimate error_bar output.errors", ("output.error_bars",)),
+    Term("output.compare compare comparison", (), "a run shows its own results alone; the comparison with Yang et al. "
+         "2022 is on docs/yang2022.md, by `python -m evidence.pages.papers.yang_figures OUT`"),
     Term("output.folder output.dir output.directory output.path output.file output.out output_folder output_dir outdir",
          (), COMMAND_LINE),
     Term("pictures", ("output.pictures",)), Term("animation", ("output.animation",)), Term("fields",

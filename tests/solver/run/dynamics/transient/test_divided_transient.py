@@ -115,7 +115,7 @@ def test_a_tolerance_that_is_not_reached_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks take a coefficient each: the same tables to 1e-6, the same numbers of steps."""
-    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     words = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out")]
     for setting in SETTINGS:
         words += ["--set", setting]

@@ -24,11 +24,11 @@ SETTINGS = (
     "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[2000]",
     "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
 )
-WHOLE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+WHOLE = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
 STOPPED = """
 import sys
 from mpi4py import MPI
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.run.dynamics.transient import cases
 
 def stopped(*given):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.dynamics.results.transient.beginning import StartRow, write_start
 from evolvent.dynamics.results.transient.facts import write_facts
 from evolvent.dynamics.results.transient.kept_tables import SCENE, KeptTables

@@ -23,7 +23,7 @@ SETTINGS = (
     "transient.tolerance=0.01", "transient.modes_per_harmonic=0", "dynamics.backlash_um=300", "output.animation=false",
 )
 PLAIN = "output.error_bars=false", "output.pictures=false"
-WHOLE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+WHOLE = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
 
 
 def scene(*settings: str) -> Scene:

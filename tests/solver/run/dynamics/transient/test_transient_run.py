@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evolvent.cli import main
+from evolvent.commands.app import main
 from evolvent.dynamics.transient.back_flanks import BackFlanks
 from evolvent.dynamics.transient.certificates import Unbalanced
 from evolvent.dynamics.transient.step_balance import StepBalance, StepEnd, StepEnergies
@@ -185,7 +185,7 @@ def test_scenes_that_cannot_be_computed(tmp_path: Path) -> None:
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide speeds and coefficients: the same tables to 1e-6, and one line at the end."""
-    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--set", "output.pictures=false",
                  "--set", "output.animation=false"]
     for setting in SETTINGS:

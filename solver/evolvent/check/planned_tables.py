@@ -1,0 +1,44 @@
+"""What `evolvent check` tells of the sections that commands beyond `evolvent run` read: [dynamics], [transient] and
+[fatigue]. Each table stands where the scene has its section."""
+
+from __future__ import annotations
+
+from itertools import starmap
+
+from evolvent.check.text_table import Row, table
+from evolvent.check.transient_rows import STEPS, step_lines, transient_lines
+from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.skips import wanted_output
+from evolvent.strength.fatigue.criterion import criteria_of
+
+
+def planned_tables(scene: Scene) -> list[str]:
+    """One for each of the sections that the scene has."""
+    return [*_vibration(scene), *_transient(scene), *_fatigue(scene)]
+
+
+def _vibration(scene: Scene) -> list[str]:
+    if scene.dynamics is None:
+        return []
+    from evolvent.check.vibration_rows import vibration_lines  # Numba takes a second to import
+
+    return [table("Vibration", starmap(Row, vibration_lines(scene, scene.dynamics)), GEARS)]
+
+
+def _transient(scene: Scene) -> list[str]:
+    if scene.transient is None:
+        return []
+    lines = transient_lines(scene, scene.transient, wanted_output(scene).error_bars)
+    return [
+        table("Transient contact", starmap(Row, lines)),
+        table(STEPS[0], starmap(Row, step_lines(scene, scene.transient)), STEPS[1]),
+    ]
+
+
+def _fatigue(scene: Scene) -> list[str]:
+    """The criteria and how many depths they are evaluated at, in one line."""
+    if scene.fatigue is None:
+        return []
+    names = ", ".join(criterion.words for criterion in criteria_of(scene.fatigue.yield_stress_MPa))
+    count, deepest = len(scene.fatigue.depths), scene.fatigue.depths[-1]
+    return [f"Contact fatigue\n  {count} depths down to {deepest:g} half-widths of the contact: {names}"]

@@ -1,0 +1,122 @@
+"""What `evolvent check` tells of the section [transient]: how many motions are computed, in which time steps, and
+whether these resolve the pair's own vibration, whose frequency is ISO's: that of the computed mesh is not known yet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from evolvent.check.planned_cost import most_time_steps, natural_modes, too_many_modes
+from evolvent.dynamics.resolved_vibration import unresolved
+from evolvent.gears.problem.gear_inertia import equivalent_mass
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
+from evolvent.scene.backlash import unnamed_backlash
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.inertias import moments_of_inertia
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
+
+Line = tuple[str, str, str, tuple[str, ...]]
+"""Name, symbol, unit and values."""
+STEPS = "Time steps at each speed", ("f_z [Hz]", "step [µs]", "steps/period")
+"""Title of the table of `step_lines`, and the heads of its columns."""
+AT_COST = "each at the cost of a position or two"
+BY_ISO = "by c_γα of ISO 6336-1"
+
+
+@dataclass(frozen=True)
+class PlannedSteps:
+    """The time steps of a speed."""
+
+    speed: float
+    """Of the pinion [r/min]."""
+    mesh_frequency: float
+    """f_z [Hz]."""
+    length: float
+    """Of a step [s], undivided."""
+    a_period: float
+    """Steps in a period of the pair's own vibration."""
+
+
+def transient_lines(scene: Scene, section: TransientSection, companion: bool) -> list[Line]:
+    """Of a scene with the section. companion: whether error bars are asked for."""
+    cases, positions = len(section.speeds_rpm) * len(scene.contact.friction), scene.sweep.positions
+    steps, divided = str(positions), section.tolerance is not None
+    modes = " and ".join(f"{float(f'{count:.2g}'):.0f}" for count in natural_modes(scene, section))
+    most = most_time_steps(section, cases, positions, companion)
+    return [
+        ("how the gears turn", "", "", (section.drive,)),
+        ("speeds × friction coefficients", "", "", (f"{len(section.speeds_rpm)} × {len(scene.contact.friction)}",)),
+        ("motions", "", "", (str(cases),)),
+        *([("  with those of coarser gears, for error bars", "", "", (str(3 * cases),))] if companion else []),
+        ("mesh periods of each, at most", "", "", (str(section.mesh_periods),)),
+        ("time steps in a mesh period" + (", at least" if divided else ""), "", "", (steps,)),
+        *([("  each of which is divided by, at most", "", "", (str(section.most_parts),))] if divided else []),
+        ("natural modes of pinion and wheel, about", "", "", (modes,)),
+        (f"time steps in all, at most, {AT_COST}", "", "", (f"{most:,}",)),
+        (f"natural frequency {BY_ISO}", "f_n", "Hz", (f"{natural_frequency(scene, section):.4g}",)),
+    ]
+
+
+def step_lines(scene: Scene, section: TransientSection) -> list[Line]:
+    """A line a speed."""
+    return [
+        (f"{each.speed:g} r/min", "", "", (
+            f"{each.mesh_frequency:.4g}", f"{1e6 * each.length:.4g}", f"{each.a_period:.3g}"))
+        for each in planned_steps(scene, section)
+    ]
+
+
+def transient_warnings(scene: Scene) -> list[str]:
+    """On a backlash that nobody has named, and on speeds at which equal steps do not resolve the pair's own vibration;
+    none of these where a tolerance divides steps."""
+    section = scene.transient
+    if section is None:
+        return []
+    found = _without_backlash(scene, section)
+    if problem := too_many_modes(scene, section):
+        found.append(f"`evolvent transient` would refuse this scene: {problem}.")
+    if section.tolerance is not None:
+        return found
+    natural, count = natural_frequency(scene, section), scene.sweep.positions
+    radius = section.spectral_radius
+    said = [unresolved(each.speed, natural, each.a_period, count, radius) for each in planned_steps(scene, section)]
+    return found + [f"{each} (natural frequency {BY_ISO})." for each in said if each]
+
+
+def _without_backlash(scene: Scene, section: TransientSection) -> list[str]:
+    """What becomes of flanks that part where nobody has named a backlash."""
+    given = None if scene.dynamics is None else scene.dynamics.backlash_um
+    if (problem := unnamed_backlash(scene.gear_pair(), given)) is None:
+        return []
+    refused = "would refuse this scene" if section.start == "rest" else "would end without results where flanks part"
+    return [f"`evolvent transient` {refused}: {problem}."]
+
+
+def planned_steps(scene: Scene, section: TransientSection) -> list[PlannedSteps]:
+    """At each speed."""
+    natural, teeth = natural_frequency(scene, section), scene.gear_pair().pinion.z
+    planned = []
+    for speed in section.speeds_rpm:
+        mesh = speed / 60.0 * teeth
+        length = 60.0 / (speed * teeth * scene.sweep.positions)
+        planned.append(PlannedSteps(speed, mesh, length, 1.0 / (natural * length)))
+    return planned
+
+
+def natural_frequency(scene: Scene, section: TransientSection) -> float:
+    """f_n [Hz] of the gears on c_γα of ISO 6336-1, with the inertia that swings: of both gears, or of the one with the
+    torque."""
+    problem = gear_problem(scene)
+    pair, force = problem.pair, problem.torque / problem.pair.gears[problem.torque_on].base_radius
+    moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
+    iso = method_b(pair, _swinging_mass(scene, section, problem), force, Accuracy(), moduli)
+    return iso.resonance_speed / 60.0 * pair.pinion.z
+
+
+def _swinging_mass(scene: Scene, section: TransientSection, problem: GearProblem) -> float:
+    """Along the line of action [t]."""
+    inertias = moments_of_inertia(problem.pair, scene.dynamics or DynamicsSection())
+    if section.drive == "free":
+        return equivalent_mass(problem.pair, inertias)
+    return inertias[problem.torque_on] / problem.pair.gears[problem.torque_on].base_radius ** 2

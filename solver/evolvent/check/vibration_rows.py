@@ -1,0 +1,53 @@
+"""What `evolvent check` tells of the section [dynamics]: inertia, backlash and the room for it, and the size of the
+calls."""
+
+from __future__ import annotations
+
+from evolvent.check.planned_cost import SWEEPS, shown_time, speeds_time
+from evolvent.dynamics.of_scene import backlash_problem, drive_settings
+from evolvent.dynamics.pair_model import lacking_room
+from evolvent.gears.problem.gear_inertia import equivalent_mass
+from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
+from evolvent.scene.backlash import unnamed_backlash
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent.scene.skips import wanted_output
+
+Line = tuple[str, str, str, tuple[str, ...]]
+"""Name, symbol, unit and the values of pinion and wheel, or of both."""
+NOBODYS = "none is given"
+WITH_OTHERS = "with those on other excitations, for error bars"
+
+
+def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
+    """Of a scene with the section."""
+    problem, count = gear_problem(scene), scene.sweep.positions
+    settings = drive_settings(problem.pair, section)
+    mass = equivalent_mass(problem.pair, settings.inertias)
+    force = problem.torque / problem.pair.gears[problem.torque_on].base_radius
+    moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
+    iso = method_b(problem.pair, mass, force, Accuracy(), moduli)
+    natural, bars = scene.planned_vibration().natural_speed, wanted_output(scene).error_bars
+    swept = ["by default", *(f"{speed:g}" for speed in section.speed_rpm or ())]
+    named = unnamed_backlash(problem.pair, section.backlash_um) is None
+    return [
+        ("moment of inertia", "I", "kg·m²", tuple(f"{1e-3 * each:.4g}" for each in settings.inertias)),
+        ("equivalent mass along the line of action", "m_e", "kg", (f"{1e3 * mass:.4g}",)),
+        ("gear bodies", "", "", (section.bodies,)),
+        ("damping ratio", "ζ", "", (f"{settings.damping_ratio:g}",)),
+        ("backlash along the line of action", "j", "µm", (f"{1e3 * settings.backlash:.4g}" if named else NOBODYS,)),
+        ("  lacking for unloaded errors", "", "µm", (f"{1e3 * lacking_room(problem, count, settings):.3g}",)),
+        ("natural speed by c_γα of ISO 6336-1", "n_E1", "r/min", (f"{iso.resonance_speed:.4g}",)),
+        ("speeds", "n", "r/min", tuple(swept[1:] or swept[:1])),
+        ("positions × torques of the excitation", "", "", (f"{count} × {len(section.torque_percents)}",)),
+        ("speeds, up and down", "", "", (str(section.speeds),)),
+        *([(f"  {WITH_OTHERS}", "", "", (str(SWEEPS * section.speeds),))] if bars else []),
+        ("processor time of the speeds, roughly", "", "", (shown_time(speeds_time(natural, section, bars)),)),
+    ]
+
+
+def vibration_warnings(scene: Scene) -> list[str]:
+    """Why `evolvent dynamics` would refuse a scene with the section; none where it would not."""
+    refused = backlash_problem(scene)
+    return [] if refused is None else [f"`evolvent dynamics` would refuse this scene: {refused}."]

@@ -1,0 +1,83 @@
+"""The scene that a command is given: read and checked on all ranks alike."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from evolvent.scene.schema.errors import SceneError
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from evolvent.scene.scene import Scene
+
+
+def loaded_scene(
+    path: Path,
+    level: str | None,
+    settings: Sequence[str] | None,
+    no_skip: Sequence[str] | None,
+    comm: MPI.Comm | None = None,
+    warns: bool = True,
+) -> Scene:
+    """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks.
+
+    comm: the ranks that take part; None: this process alone, without MPI. warns: print a warning on each key that has
+    no effect.
+    """
+    from evolvent.scene.scene import load_scene
+    from evolvent.scene.schema.dependence import effectless_keys
+
+    result: Scene | SceneError | None = None
+    if comm is None or comm.rank == 0:
+        try:
+            overrides = with_level(settings, level)
+            overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
+            result = load_scene(path, overrides)
+        except SceneError as error:
+            result = SceneError(error.problems, error.source)  # causes and tracebacks may not be fit to be sent
+    result = result if comm is None else comm.bcast(result)
+    assert result is not None
+    if isinstance(result, SceneError):
+        raise result
+    if warns and (comm is None or comm.rank == 0):
+        warn(effectless_keys(result))
+    return result
+
+
+def with_level(settings: Sequence[str] | None, level: str | None) -> list[str]:
+    """Overrides of --set, and that of --level where it is given."""
+    return [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
+
+
+def require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm | None = None) -> None:
+    """Raises SceneError where the machine has too little memory for the command. force: do not check. Collective.
+
+    comm: the ranks that take part; None: this process alone, without MPI.
+    """
+    from evolvent.check.problem_size import MEMORY_OF, require_memory
+
+    if not force:
+        require_memory(scene, MEMORY_OF[command], comm)
+
+
+def require(holds: bool, message: str) -> None:
+    """Raises a usage error unless `holds`. message: with key, found, allowed and remedy."""
+    if not holds:
+        raise typer.BadParameter(message)
+
+
+def unworn(scene: Scene) -> Scene:
+    """The scene without [wear], as these commands solve it: the gears as they are."""
+    return scene.model_copy(update={"wear": None})
+
+
+def warn(sentences: Sequence[str]) -> None:
+    """Prints what a command has returned to be read."""
+    for sentence in sentences:
+        typer.echo(f"evolvent: warning: {sentence}", err=True)

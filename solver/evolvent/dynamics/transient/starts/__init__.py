@@ -1,1 +1,0 @@
-"""The states in which a transient begins."""

@@ -1,1 +1,0 @@
-"""Inertia of elastic bodies: mass matrix, natural modes."""

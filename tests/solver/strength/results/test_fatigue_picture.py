@@ -1,0 +1,49 @@
+"""The picture of contact fatigue, of five points along the pinion's flank under a Hertz pressure of 800 to 1500 MPa."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+
+from evolvent.results.drawing.style import OVER
+from evolvent.strength.fatigue.criterion import DANG_VAN
+from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
+from evolvent.strength.fatigue.flank_loads import FlankLoads
+from evolvent.strength.results.fatigue_picture import fatigue_figure
+from evolvent.strength.results.friction_fatigue import FrictionFatigue
+from tests.support.gear_cases import spur_scene
+
+COUNT, DEPTHS = 5, (0.0, 0.1, 0.2, 0.5, 0.8, 1.5, 3.0)
+STEEL = FatigueMaterial(0.3, 80e3, None, 0.3, 0.0, 1.0)
+
+
+def drawn() -> Figure:
+    """In plane strain, at one friction coefficient."""
+    loads = FlankLoads(
+        np.zeros((2, COUNT), dtype=int), np.linspace(-3.0, 3.0, COUNT), np.zeros(COUNT),
+        np.linspace(800.0, 1500.0, COUNT), np.full(COUNT, 0.1), np.full(COUNT, 0.1),
+    )
+    own = flank_fatigue(loads, 0.1, DEPTHS, STEEL)
+    return fatigue_figure("a pair", spur_scene().gear_pair(), [FrictionFatigue(0.1, (own, own), math.nan)])
+
+
+def test_every_panel_names_its_criterion() -> None:
+    """Dang Van's over the flank and over the depth, on the colours beside it; those on the right in the legend."""
+    over, section, below, colours = drawn().axes
+    assert over.get_title().startswith(f"{DANG_VAN.words}: ") and over.get_xlabel() == f"{DANG_VAN.words} [MPa]"
+    assert section.get_title().startswith(f"{DANG_VAN.words}: ")
+    assert colours.get_ylabel() == f"{DANG_VAN.words} [MPa]"
+    legend = below.get_legend()
+    assert legend is not None and DANG_VAN.words in [text.get_text() for text in legend.get_texts()]
+
+
+def test_nothing_is_coloured_as_above_the_scale() -> None:
+    """The scale ends at the largest value: no part of the section has the colour of what lies above it. Depths begin at
+    0."""
+    _, section, below, _ = drawn().axes
+    colours = np.concatenate([each.get_facecolor() for each in section.collections])
+    assert len(colours) > COUNT and not np.isclose(colours, to_rgba(OVER)).all(axis=1).any()
+    assert below.get_ylim()[1] == 0.0

@@ -29,7 +29,7 @@ from demos.hertz_sphere import ball_on_block
 from demos.two_blocks import variants
 from evolvent import Solution, solve
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.results.archive.archive import ArchiveError, arrays_bytes, read_arrays
+from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arrays
 from evolvent.run.scene_run import run_scene
 from evolvent_meshes.files import write_bytes
 from tests.support.gear_cases import helical_scene, spur_scene

@@ -17,7 +17,7 @@ from evidence.checkout import ROOT
 from evidence.claims import Claim, regression
 from evidence.processes import environment, module_run, run_arguments
 from evidence.scenes import QUIET
-from evolvent.results.archive.archive import read_arrays
+from evolvent.results.archive.store import read_arrays
 
 SETTINGS = ("contact.friction=[0.1, 0.3]", "sweep.positions=8", *QUIET)
 KILLS = 20

@@ -12,7 +12,7 @@ import pytest
 
 from demos.two_blocks import Patch
 from evolvent import Step, solve
-from evolvent.results.archive.archive import arrays_bytes, read_arrays
+from evolvent.results.archive.store import arrays_bytes, read_arrays
 from evolvent_meshes.files import write_bytes
 from tests.agreement import TOLERANCE, differences, keep, main
 

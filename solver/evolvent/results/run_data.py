@@ -14,9 +14,10 @@ from evolvent.gears.pressure.flank_facets import FlankFacets
 from evolvent.gears.pressure.tip_zones import path_between_zones
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.archive.archive import Archive, ArchiveError
+from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, requested_error_bars
 from evolvent.results.archive.gear_shapes import GearShape
+from evolvent.results.archive.store import ArchiveError
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from evidence.robustness.faults import Struck, arguments, differs, run, struck_again_and_again
-from evolvent.results.archive.archive import read_arrays
+from evolvent.results.archive.store import read_arrays
 from tests.support.running.processes import BROKEN_RUN, Run
 
 

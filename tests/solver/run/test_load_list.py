@@ -11,7 +11,7 @@ import pytest
 
 from evolvent.commands.app import Exit, main
 from evolvent.gears import load_list as gear_loads
-from evolvent.results.archive.archive import ArchiveError
+from evolvent.results.archive.store import ArchiveError
 from evolvent.results.tables.load_table import LoadRow
 from evolvent.run.load_list import load_scenes, run_loads
 from evolvent.run.scene_run import run_scene

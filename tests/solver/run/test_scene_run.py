@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from evolvent.gears.solution.certificates import BALANCE_LIMIT
-from evolvent.results.archive.archive import read_arrays
+from evolvent.results.archive.store import read_arrays
 from tests.support.gear_cases import HELICAL
 from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
 

@@ -16,7 +16,8 @@ import pyvista
 
 from evidence.benchmarks.gears.skips import differences
 from evolvent.gears.meshing import levelled_meshes
-from evolvent.results.archive.archive import Archive, ArchiveError
+from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.store import ArchiveError
 from evolvent.results.run_data import read_run
 from evolvent.run.coarse_run import solve_companion
 from evolvent.run.pitch_run import pitch_of

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.results.archive.archive import Archive, ArchiveError
+from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import write_scene
+from evolvent.results.archive.store import ArchiveError, arrays_bytes
 from evolvent.scene.differences import differences
 from evolvent.scene.skips import with_deflected_flanks
 from tests.support.gear_cases import spur_scene
@@ -47,13 +48,14 @@ def test_flank_charts_differ_by_content(tmp_path: Path) -> None:
 
 def test_refused_resume_names_the_difference(tmp_path: Path) -> None:
     """The keys; the version where none differs; that the kept scene cannot be read."""
-    scene, other = spur_scene(), {"fingerprint": "of another one"}
+    scene = spur_scene()
+    RunFolder(tmp_path).write("results/state.npz", arrays_bytes({"fingerprint": "another one", "complete": 0}))
     write_scene(spur_scene("load.torque_Nm=100"), RunFolder(tmp_path))
     with pytest.raises(ArchiveError, match=r"another one: this one has load\.torque_Nm = 170 \(kept: 100\);"):
-        Archive(tmp_path, scene).require_scene(other)
+        Archive(tmp_path, scene).read_sweep(scene.gear_pair())
     write_scene(scene, RunFolder(tmp_path))
     with pytest.raises(ArchiveError, match="found those of another version of Evolvent: no key differs"):
-        Archive(tmp_path, scene).require_scene(other)
+        Archive(tmp_path, scene).read_sweep(scene.gear_pair())
     (tmp_path / "scene.toml").unlink()
     with pytest.raises(ArchiveError, match=r"scene\.toml cannot be read"):
-        Archive(tmp_path, scene).require_scene({})
+        Archive(tmp_path, scene).read_sweep(scene.gear_pair())

@@ -41,7 +41,7 @@ from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.meshing import levelled_meshes
 from evolvent.gears.solution import certificates
 from evolvent.gears.sweep import parallel_sweep, pitch_sweep
-from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.store import Store
 from evolvent_meshes import files
 from tests.support.running.patches import calling_first, with_result
 
@@ -66,7 +66,7 @@ def kill_when(wanted: int) -> Callable[[int], None]:
 
 def at_archive_file(wanted: int, strike: Callable[[], None]) -> None:
     """Calls `strike` before the archive writes its file number `wanted`."""
-    before_call(Archive, "write_arrays", lambda number: strike() if number == wanted else None)
+    before_call(Store, "write", lambda number: strike() if number == wanted else None)
 
 
 def kill_before_renaming() -> None:

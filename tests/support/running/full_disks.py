@@ -17,7 +17,7 @@ from pathlib import Path
 
 from evidence.robustness.faults import SETTINGS
 from evolvent.commands.app import main
-from evolvent.results.archive.archive import ArchiveError, read_arrays
+from evolvent.results.archive.store import ArchiveError, read_arrays
 
 THEIRS = ("out/photo.png", "out/pictures/photo.png", "out/results/measured.npz")
 SCENE = ["run", "demos/he2022.toml", "--level", "quick", "--quiet"]

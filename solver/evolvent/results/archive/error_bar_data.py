@@ -7,7 +7,8 @@ from dataclasses import astuple, dataclass, fields
 
 import numpy as np
 
-from evolvent.results.archive.archive import Archive, ArchiveError, read_arrays
+from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.store import ArchiveError, Arrays
 from evolvent.scene.skips import wanted_output
 
 METHOD = (
@@ -18,6 +19,7 @@ METHOD = (
     "flanks have levels, what the reach of their patches leaves out is not in it (docs/two_level.md)"
 )
 """How error bars are estimated, as summary.json says it; bars archived with another method are estimated anew."""
+FILE = "results/errors.npz"
 FINER = 3
 """Largest number of additional decimals with which `plus_minus` prints."""
 
@@ -71,22 +73,24 @@ def write_error_bars(archive: Archive, errors: EstimatedErrors) -> None:
     """Writes OUT/results/errors.npz if errors were estimated. Raises WriteError, FolderError."""
     if errors.figures:
         values = np.array([astuple(row) for row in errors.figures])
-        arrays = {"fingerprint": archive.fingerprint, "method": errors.method, "values": values}
-        archive.write_arrays("errors.npz", arrays)
+        archive.store.write(FILE, {"method": errors.method, "values": values})
 
 
 def read_error_bars(archive: Archive) -> EstimatedErrors | None:
     """The errors that `write_error_bars` wrote; None where they are missing, unreadable, or belong to another scene,
     another method or other figures."""
     try:
-        arrays = read_arrays(archive.folder / "errors.npz")
+        return archive.store.read(FILE, _errors)
     except ArchiveError:
         return None  # results are usable without error bars
-    if (str(arrays["fingerprint"]), str(arrays["method"])) != (archive.fingerprint, METHOD):
+
+
+def _errors(arrays: Arrays) -> EstimatedErrors | None:
+    """None where they were estimated with another method, or of other figures."""
+    method, values = str(arrays["method"]), arrays["values"]
+    if method != METHOD or values.shape[1] != len(fields(FigureErrors)):
         return None
-    if arrays["values"].shape[1] != len(fields(FigureErrors)):
-        return None
-    return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")
+    return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in values), method, "")
 
 
 def requested_error_bars(archive: Archive) -> EstimatedErrors | None:

@@ -6,8 +6,8 @@ import json
 from dataclasses import asdict, astuple, dataclass, fields
 from pathlib import Path
 
-from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.store import ArchiveError
 from evolvent_meshes.files import open_file
 
 FILE = Path("results/cost.json")

@@ -14,8 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from evolvent.results.archive.archive import ArchiveError, arrays_bytes, fingerprint, read_arrays
+from evolvent.results.archive.archive import fingerprint
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.store import ArchiveError, Arrays, Store
 from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent_meshes.arrays import Floats
 
@@ -26,12 +27,10 @@ KEPT, KEPT_COARSE = "results/excitation.npz", "results/excitation_coarse.npz"
 class KeptPositions:
     """The solved positions of one kind of meshes. Only rank 0 reads and writes them."""
 
-    folder: RunFolder
-    """Where the call writes."""
+    store: Store
+    """Files of the call, with the identity of the gears, their torques and positions, see `identity`."""
     name: str
-    """Of the file below that."""
-    identity: str
-    """Of the gears, their torques and positions, see `identity`."""
+    """File below OUT."""
     resume: bool
     """Whether the call goes on from those of an earlier one."""
 
@@ -39,36 +38,38 @@ class KeptPositions:
         """Number of a position -> (m, 2) transmission error [mm] and tangent stiffness [N/mm] under each torque; none
         where the call begins anew, or there is no file. Raises ArchiveError where it is that of other gears, torques or
         positions."""
-        path = self.folder.out / self.name
-        if not self.resume or not path.exists():
-            return {}
-        arrays = read_arrays(path)
-        if str(arrays.get("identity")) != self.identity:
-            raise ArchiveError(
-                f"{path}: wanted positions of this scene, found those of other gears, meshes, torques or positions "
-                "(what follows on the excitation may differ); --resume goes on with the scene and the torques that it "
-                "was called with, --out names another folder, --overwrite computes anew"
-            )
+        return (self.store.read(self.name, self._figures) or {}) if self.resume else {}
+
+    def _figures(self, arrays: Arrays) -> dict[int, Floats]:
+        """Raises ArchiveError where the arrays are not those of positions."""
         numbers, figures = arrays.get("numbers", np.zeros(0)), arrays.get("figures", np.zeros(0))
         fits = figures.shape == (*numbers.shape, *figures.shape[1:2], 2)
         if numbers.dtype.kind != "i" or figures.dtype.kind != "f" or not fits:
             raise ArchiveError(
-                f"{path}: wanted numbers of positions with their figures, found other arrays; move or remove it, then "
-                "call again"
+                f"{self.store.folder.out / self.name}: wanted numbers of positions with their figures, found other "
+                "arrays; move or remove it, then call again"
             )
         return {int(number): each for number, each in zip(numbers, figures)}
 
     def write(self, found: Mapping[int, Floats]) -> None:
         """Keeps positions, see `read`. Raises WriteError, FolderError."""
         numbers = sorted(found)
-        arrays = {"identity": self.identity, "numbers": numbers, "figures": np.array([found[i] for i in numbers])}
-        self.folder.write(self.name, arrays_bytes(arrays))
+        self.store.write(self.name, {"numbers": numbers, "figures": np.array([found[i] for i in numbers])})
 
 
 def kept_positions(loads: SceneTorques, out: Path, resume: bool) -> tuple[KeptPositions, KeptPositions]:
-    """Of the meshes of the scene and of the companion's."""
-    fine, coarse = (KeptPositions(RunFolder(out), name, identity(loads), resume) for name in (KEPT, KEPT_COARSE))
-    return fine, coarse
+    """Positions on the meshes of the scene and on those of the companion."""
+    store = Store(RunFolder(out), identity(loads), another)
+    return KeptPositions(store, KEPT, resume), KeptPositions(store, KEPT_COARSE, resume)
+
+
+def another(path: Path) -> str:
+    """Message on positions of another scene."""
+    return (
+        f"{path}: wanted positions of this scene, found those of other gears, meshes, torques or positions (what "
+        "follows on the excitation may differ); --resume goes on with the scene and the torques that it was called "
+        "with, --out names another folder, --overwrite computes anew"
+    )
 
 
 def identity(loads: SceneTorques) -> str:

@@ -13,9 +13,9 @@ from mpi4py import MPI
 from evolvent.check.problem_size import MEMORY_OF, memory_megabytes, require_memory
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.load_list import LoadList
-from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
+from evolvent.results.archive.store import ArchiveError
 from evolvent.run.dynamics.excitation import run_excitation
 from evolvent.run.dynamics.kept_positions import KEPT
 from evolvent.run.dynamics.vibration import run_dynamics

@@ -17,10 +17,11 @@ from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import SearchedAt
-from evolvent.results.archive.archive import Archive, read_arrays
+from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import write_scene
+from evolvent.results.archive.store import Arrays
 from evolvent.results.tables.tables import csv_text
 from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import PreviousBlock
@@ -30,7 +31,7 @@ from evolvent.wear.gears.pitch_state import Vibration
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
-FILE = "wear.npz"
+FILE = "results/wear.npz"
 COUNTS = "refused", "searched", "refreshed", "repeats"  # the integer columns of rows
 R = TypeVar("R", BlockRow, VibrationRow)
 
@@ -39,7 +40,7 @@ def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
     """Writes OUT/wear.csv and OUT/vibration.csv, one line per block, and then the checkpoint. Raises OSError."""
     previous, vibration = checkpoint.previous or PreviousBlock(np.zeros(0), 0.0), checkpoint.vibration
     arrays = {
-        "fingerprint": archive.fingerprint, "cycles": checkpoint.cycles, "depth": checkpoint.depth,
+        "cycles": checkpoint.cycles, "depth": checkpoint.depth,
         "known": checkpoint.mesh_depth, "length": checkpoint.next_length,
         "last_rate": previous.rate, "last_length": previous.length,
         "searches": _places(checkpoint.searches),
@@ -54,15 +55,15 @@ def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
         archive.files.write_text("vibration.csv", csv_text(rows))
     if checkpoint.rows:
         archive.files.write_text("wear.csv", csv_text([asdict(row) for row in checkpoint.rows]))
-    archive.write_arrays(FILE, arrays)
+    archive.store.write(FILE, arrays)
 
 
 def read_checkpoint(archive: Archive) -> StudyCheckpoint | None:
     """The checkpoint of a study, None where there is none. Raises ArchiveError where it is another scene's."""
-    if not (archive.folder / FILE).exists():
-        return None
-    arrays = read_arrays(archive.folder / FILE)
-    archive.require_scene(arrays)
+    return archive.store.read(FILE, _checkpoint)
+
+
+def _checkpoint(arrays: Arrays) -> StudyCheckpoint:
     rate = arrays["last_rate"]
     previous = PreviousBlock(rate, float(arrays["last_length"])) if len(rate) else None
     return StudyCheckpoint(

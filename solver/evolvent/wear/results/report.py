@@ -12,8 +12,9 @@ from scipy.integrate import trapezoid
 
 from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.gears.problem.flank_deviations import FlankChart
-from evolvent.results.archive.archive import Archive, ArchiveError
+from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.store import ArchiveError
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.tables import without_nan

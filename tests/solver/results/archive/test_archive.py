@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
-from evolvent.results.archive.archive import Archive, ArchiveError, arrays_bytes, fingerprint, read_arrays
+from evolvent.results.archive.archive import Archive, fingerprint
+from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arrays
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.files import write_bytes
 from tests.support.gear_cases import helical_scene, model_of, spur_scene

@@ -14,9 +14,10 @@ from typing import Any
 import pytest
 
 from evolvent.commands.app import Exit, main
-from evolvent.results.archive.archive import Archive, ArchiveError
+from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_cost import FILE, Cost, Timings, read_cost, write_cost
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.store import ArchiveError
 from tests.support.checkout import ROOT
 
 SHORT = ("sweep.positions=2", "output.animation=false", "output.pictures=false", "output.fields=false")

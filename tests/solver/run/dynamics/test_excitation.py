@@ -11,8 +11,8 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.gears.meshing.companion_meshes import companion_mesh
-from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.archive.run_folder import FolderError
+from evolvent.results.archive.store import ArchiveError
 from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.excitation import loaded_pitch, run_excitation
 from evolvent.run.dynamics.kept_positions import KeptPositions

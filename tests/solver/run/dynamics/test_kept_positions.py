@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from evolvent.results.archive.archive import ArchiveError, arrays_bytes
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.run.dynamics.kept_positions import KEPT, KeptPositions
+from evolvent.results.archive.store import ArchiveError, Store, arrays_bytes
+from evolvent.run.dynamics.kept_positions import KEPT, KeptPositions, another
 
 
 def single_array() -> bytes:
@@ -26,13 +26,18 @@ def archive(**arrays: Any) -> bytes:
     return bytes(arrays_bytes({"identity": "gears", **arrays}))
 
 
+def kept(out: Path) -> KeptPositions:
+    """Positions of the right gears."""
+    return KeptPositions(Store(RunFolder(out), "gears", another), KEPT, True)
+
+
 WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 2)))
 
 
 def test_what_was_written_is_read(tmp_path: Path) -> None:
     """Two positions under one torque."""
     RunFolder(tmp_path).write(KEPT, WHOLE)
-    found = KeptPositions(RunFolder(tmp_path), KEPT, "gears", True).read()
+    found = kept(tmp_path).read()
     assert list(found) == [0, 1] and np.array_equal(found[1], np.ones((1, 2)))
 
 
@@ -51,4 +56,4 @@ def test_forged_positions_are_refused(tmp_path: Path, content: bytes) -> None:
     """Archives that are cut off, damaged, no archives, or hold other arrays: an error with the path, nothing else."""
     RunFolder(tmp_path).write(KEPT, content)
     with pytest.raises(ArchiveError, match=r"excitation\.npz: wanted"):
-        KeptPositions(RunFolder(tmp_path), KEPT, "gears", True).read()
+        kept(tmp_path).read()

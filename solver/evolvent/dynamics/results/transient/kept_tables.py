@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from evolvent.dynamics.results.transient.beginning import TRANSIENT_START, StartRow
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS, TransientFacts
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH, TransientRow, TransientToothRow
-from evolvent.results.archive.archive import ArchiveError
+from evolvent.results.archive.store import ArchiveError
 
 PICTURE, START_PICTURE, SCENE = "transient.png", "transient_start.png", "transient.toml"
 T = TypeVar("T", TransientRow, TransientToothRow, StartRow, TransientFacts)

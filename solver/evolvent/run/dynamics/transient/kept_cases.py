@@ -14,10 +14,9 @@ folder takes each one's line whole.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from pathlib import Path
-from typing import Any, TypeVar
 
 import numpy as np
 
@@ -26,9 +25,10 @@ from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.dynamics.transient.step_balance import Residuals, StepEnergies
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.archive.archive import ArchiveError, arrays_bytes, fingerprint, read_arrays
+from evolvent.results.archive.archive import fingerprint
 from evolvent.results.archive.position_arrays import archived_result, result_arrays
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.store import Arrays, Store
 from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import TransientSection
@@ -39,19 +39,16 @@ COARSE, FINER_STEPS = "_coarse", "_finer"
 BEGINNING = "beginning/"
 Statics = list[tuple[PositionResult, ...]]
 """Of each friction coefficient, its positions."""
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class KeptCases:
     """Of one scene."""
 
-    folder: RunFolder
-    """Where the call writes."""
-    identity: str
-    """Of all in the scene that a case depends on."""
-    static_identity: str
-    """The same of the statics."""
+    cases: Store
+    """Files with the identity of everything in the scene that a case depends on."""
+    statics: Store
+    """Files with the identity of what the positions without inertia depend on."""
     names: tuple[str, ...]
     """Of the cases by their numbers, every speed at every friction coefficient."""
     pair: GearPair
@@ -66,27 +63,26 @@ class KeptCases:
         section = transient_section(scene)
         names = [f"{speed:.17g}rpm_{i}" for speed in section.speeds_rpm for i in range(len(scene.contact.friction))]
         highest = (max(section.speeds_rpm),) if section.modes_per_harmonic is None else ()
-        identities = _fingerprint(scene, section, highest), _fingerprint(scene, section, ())
-        return KeptCases(RunFolder(out), *identities, tuple(names), pair, kind)
+        cases, statics = (
+            Store(RunFolder(out), _fingerprint(scene, section, speeds), another) for speeds in (highest, ())
+        )
+        return KeptCases(cases, statics, tuple(names), pair, kind)
 
     def read_static(self) -> Statics | None:
         """None where there are none. Raises ArchiveError."""
-        path = self.folder.out / self._name("static")
-        return self._read(path, self.static_identity, self._static) if path.exists() else None
+        return self.statics.read(self._name("static"), self._static)
 
     def write_static(self, static: Statics) -> None:
         """Keeps the positions without inertia. Raises WriteError, FolderError."""
-        arrays: dict[str, Any] = {"count": len(static)}
+        arrays: Arrays = {"count": len(static)}
         for i, results in enumerate(static):
             arrays |= _positions_arrays(results, f"{i}/")
-        self._write(self._name("static"), self.static_identity, arrays)
+        self.statics.write(self._name("static"), arrays)
 
     def read(self) -> dict[int, MeshPeriods]:
         """Number of a case that has ended -> its motion. Raises ArchiveError."""
-        paths = {number: self.folder.out / self._name(name) for number, name in enumerate(self.names)}
-        return {
-            number: self._read(path, self.identity, self._periods) for number, path in paths.items() if path.exists()
-        }
+        read = {number: self.cases.read(self._name(name), self._periods) for number, name in enumerate(self.names)}
+        return {number: periods for number, periods in read.items() if periods is not None}
 
     def write(self, number: int, found: MeshPeriods) -> None:
         """Keeps a case. Raises WriteError, FolderError."""
@@ -94,48 +90,38 @@ class KeptCases:
             "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
             "residuals": astuple(found.residuals), "lowest_error": found.lowest_error,
         }
-        self._write(self._name(self.names[number]), self.identity, arrays)
+        self.cases.write(self._name(self.names[number]), arrays)
 
     def _name(self, what: str) -> str:
         return f"results/transient{self.kind}_{what}.npz"
 
-    def _static(self, arrays: dict[str, Any]) -> Statics:
+    def _static(self, arrays: Arrays) -> Statics:
         return [tuple(self._positions(arrays, f"{i}/")) for i in range(int(arrays["count"]))]
 
-    def _periods(self, arrays: dict[str, Any]) -> MeshPeriods:
+    def _periods(self, arrays: Arrays) -> MeshPeriods:
         return MeshPeriods(
             self._moments(arrays, ""), arrays["errors"], arrays["changes"], float(arrays["wanted"]),
             Residuals(*arrays["residuals"].tolist()), float(arrays["lowest_error"]), self._moments(arrays, BEGINNING),
         )
 
-    def _moments(self, arrays: dict[str, Any], start: str) -> tuple[PairMoment, ...]:
+    def _moments(self, arrays: Arrays, start: str) -> tuple[PairMoment, ...]:
         columns = (arrays[start + name].tolist() for name in ("moments", "balances", "energies", "steps"))
         return tuple(
             PairMoment(time, result, force, rate, Residuals(*balances), StepEnergies(*energies), _steps(*steps))
             for result, (time, force, rate), balances, energies, steps in zip(self._positions(arrays, start), *columns)
         )
 
-    def _positions(self, arrays: dict[str, Any], start: str) -> list[PositionResult]:
+    def _positions(self, arrays: Arrays, start: str) -> list[PositionResult]:
         return [archived_result(arrays, f"{start}{k}/", self.pair) for k in range(int(arrays[f"{start}positions"]))]
 
-    def _read(self, path: Path, identity: str, made: Callable[[dict[str, Any]], T]) -> T:
-        arrays = read_arrays(path)
-        if str(arrays.get("identity")) != identity:
-            raise ArchiveError(
-                f"{path}: wanted a result of this scene, found that of another one; --resume goes on with the scene "
-                "and the settings that it was called with, to which lower speeds may be added, with "
-                "transient.modes_per_harmonic higher ones, too; --out names another folder, --overwrite computes anew"
-            )
-        try:
-            return made(arrays)
-        except KeyError as missing:
-            raise ArchiveError(
-                f"{path}: wanted a result of this version of Evolvent, found one without {missing}; --overwrite "
-                "computes anew"
-            ) from missing
 
-    def _write(self, name: str, identity: str, arrays: dict[str, Any]) -> None:
-        self.folder.write(name, arrays_bytes({"identity": identity, **arrays}))
+def another(path: Path) -> str:
+    """Message on a case or on statics of another scene."""
+    return (
+        f"{path}: wanted a result of this scene, found that of another one; --resume goes on with the scene and the "
+        "settings that it was called with, to which lower speeds may be added, with transient.modes_per_harmonic "
+        "higher ones, too; --out names another folder, --overwrite computes anew"
+    )
 
 
 def _fingerprint(scene: Scene, section: TransientSection, speeds: tuple[float, ...]) -> str:
@@ -148,7 +134,7 @@ def _steps(accepted: float, rejected: float, *others: float) -> StepsTaken:
     return StepsTaken(int(accepted), int(rejected), *others)
 
 
-def _moments_arrays(moments: Sequence[PairMoment], start: str) -> dict[str, Any]:
+def _moments_arrays(moments: Sequence[PairMoment], start: str) -> Arrays:
     columns = {
         "moments": [(moment.time, moment.mesh_force, moment.rate) for moment in moments],
         "balances": [astuple(moment.residuals) for moment in moments],
@@ -159,7 +145,7 @@ def _moments_arrays(moments: Sequence[PairMoment], start: str) -> dict[str, Any]
     return results | {f"{start}{name}": np.asarray(column) for name, column in columns.items()}
 
 
-def _positions_arrays(results: Sequence[PositionResult], start: str) -> dict[str, Any]:
+def _positions_arrays(results: Sequence[PositionResult], start: str) -> Arrays:
     named = [(f"{start}{k}/", result_arrays(result)) for k, result in enumerate(results)]
     positions = {f"{place}{name}": np.asarray(value) for place, arrays in named for name, value in arrays.items()}
     return positions | {f"{start}positions": np.asarray(len(results))}

@@ -13,8 +13,8 @@ from evolvent.dynamics.results.transient.errors import MovingCompanion
 from evolvent.gears.gear_model import Preparer
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.archive.run_folder import FolderError
+from evolvent.results.archive.store import ArchiveError
 from evolvent.run.dynamics.transient.cases import PairCases, PairMeshes
 from evolvent.run.dynamics.transient.kept_cases import COARSE, FINER_STEPS, KeptCases
 from evolvent.run.progress import ERROR_BARS, Progress

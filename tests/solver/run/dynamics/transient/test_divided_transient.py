@@ -91,7 +91,7 @@ def test_kept_cases_have_their_steps(out: Path, monkeypatch: pytest.MonkeyPatch,
         again = KeptCases.of(scene(), cases.pair, tmp_path)
         again.write(number, found)
         assert [moment.steps for moment in again.read()[number].moments] == [moment.steps for moment in found.moments]
-    assert KeptCases.of(scene("transient.tolerance=0.005"), cases.pair, out).identity != cases.identity
+    assert KeptCases.of(scene("transient.tolerance=0.005"), cases.pair, out).cases.identity != cases.cases.identity
     before = [(out / name).read_bytes() for name in TABLES]
     monkeypatch.setattr(module, "until_steady", None)
     run_transient(scene(), out, resume=True, quiet=True)

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from evolvent.dynamics.transient.steady_state import MeshPeriods
-from evolvent.results.archive.archive import ArchiveError, arrays_bytes, read_arrays
 from evolvent.results.archive.run_folder import FolderError
+from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arrays
 from evolvent.run.dynamics.transient import cases as module
 from evolvent.run.dynamics.transient.kept_cases import KeptCases
 from evolvent.run.dynamics.transient.transient_run import run_transient

@@ -20,7 +20,7 @@ from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
-from evolvent.scene.skips import wanted_output
+from evolvent.scene.skips import wanted_output, with_deflected_flanks
 from evolvent.strength.peak_positions import Roots
 from evolvent.strength.results.gauge_table import GAUGES, gauge_rows, write_gauges
 from evolvent.strength.results.tables import (
@@ -60,7 +60,7 @@ def run_strength(
     calls share.
 
     Raises InputError where the standard does not cover the gears or a strain gauge does not lie on a root, before
-    anything is computed; FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance, WriteError.
+    anything is computed; FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
@@ -71,6 +71,7 @@ def run_strength(
     with checked, Progress(hidden=hidden) as progress:
         fine_mesh, coarse_mesh = scene_root_meshes(scene)
         fine = pitch_roots(scene, fine_mesh, comm, progress, prepare=prepare)
+        scene = with_deflected_flanks(scene) if fine.deflected else scene
         coarse, failure = None, ""
         if wanted_output(scene).error_bars:
             try:

@@ -48,4 +48,4 @@ def companion_of(
         raise
     except EvolventError as error:  # the same on all ranks
         return None, [f"Error bars: their coarse companion could not be solved: {error}"]
-    return MovingCompanion(cases.pair.model, scene.mesh.order, cases.static, same, finer), []
+    return MovingCompanion(cases.pair.model, scene.mesh.order, cases.static.positions, same, finer), []

@@ -11,8 +11,6 @@ its positions a quarter: on Yang's pair at standard a third of the processor tim
 
 from __future__ import annotations
 
-import time
-
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import together
@@ -25,12 +23,12 @@ from evolvent.results.archive.error_bar_data import read_error_bars
 from evolvent.results.archive.gear_shapes import gear_shape
 from evolvent.results.error_bars.estimation import Companion
 from evolvent.results.run_data import RunData, run_data
+from evolvent.run.companion import attempted
 from evolvent.run.context import RunContext
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import with_deflected_flanks
-from evolvent_meshes.errors import EvolventError
 
 
 def companion_of(run: RunContext, scene: Scene) -> Companion | None:
@@ -47,15 +45,10 @@ def companion_of(run: RunContext, scene: Scene) -> Companion | None:
 def solve_companion(scene: Scene, pitch: Pitch, comm: MPI.Comm, prepare: Preparer | None = None) -> Companion:
     """Meshes, condenses and sweeps the companion. Collective. prepare: see `RunContext`.
 
-    An error of meshing or solving becomes `Companion.failure`: a run is not lost for its error bars. Every other
-    exception is a bug and is raised.
+    An error of meshing or solving becomes `Companion.failure`, see `attempted`.
     """
-    begin, run, failure = time.perf_counter(), None, ""
-    try:
-        run = solved_run(scene, pitch, comm, companion_mesh, prepare)
-    except EvolventError as error:  # the same on all ranks: `solved_run` fails on all together
-        failure = f"The coarse companion that error bars come from could not be solved: {error}"
-    return Companion(run, failure, time.perf_counter() - begin)
+    found = attempted(lambda: solved_run(scene, pitch, comm, companion_mesh, prepare))
+    return Companion(found.value, found.reason, found.seconds)
 
 
 def solved_run(

@@ -23,6 +23,7 @@ from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.run.companion import attempted
 from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPositions, kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.dynamics.written_files import EXCITATION_PICTURE, OF_DYNAMICS, OF_EXCITATION
@@ -31,7 +32,6 @@ from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSIT
 from evolvent.scene.pair_dynamics import check_positions
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.errors import EvolventError
 
 
 def run_excitation(
@@ -90,16 +90,17 @@ def companion_of(
     kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
 ) -> CoarseExcitation:
     """The same positions and torques on elements of twice the size, where the scene asks for error bars; an error of
-    meshing or solving becomes its `failure`: results are not lost for their error bars. Collective."""
+    meshing or solving becomes its `failure`, see `attempted`. Collective."""
     if not wanted_output(loads.scene).error_bars:
         return NO_COMPANION
-    angles = excitation.loaded.angles
-    try:
+
+    def solved() -> MeshExcitation:
+        angles = excitation.loaded.angles
         loaded = loaded_pitch(loads, angles, companion_mesh, comm, progress, ERROR_BARS, kept, prepare)
-        coarse = MeshExcitation(excitation.unloaded_error, loaded)
-        return CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements)
-    except EvolventError as error:  # the same on all ranks
-        return CoarseExcitation(None, failure=f"Error bars: their coarse companion could not be solved: {error}")
+        return MeshExcitation(excitation.unloaded_error, loaded)
+
+    found = attempted(solved)
+    return CoarseExcitation(found.value, loads.scene.mesh.order, loads.elements, found.reason)
 
 
 def loaded_pitch(

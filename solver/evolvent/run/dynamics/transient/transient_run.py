@@ -82,10 +82,11 @@ def run_transient(
     with checked as said, Progress(hidden=hidden) as progress:
         own = PairCases.of(scene, problem, settings, PairMeshes(), kept(), comm, progress, prepare)
         found = own.found(kept())
-        companion, missing = companion_of(scene, problem, settings, kept, comm, progress, prepare)
+        companion = companion_of(scene, problem, settings, kept, comm, progress, prepare)
         progress.stage(OUTPUT)
         said += [*chart_warnings(scene), *unused_keys(dynamics), *doubtful(scene.planned_vibration())]
-        return said + missing + on_first(comm, lambda: _written(own, found, companion, out))
+        said += filter(None, [companion.reason])
+        return said + on_first(comm, lambda: _written(own, found, companion.value, out))
 
 
 def _written(

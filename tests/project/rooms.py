@@ -58,7 +58,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.pressure",
     ),
     "dynamics.oscillator": ("meshes", "fem.backend"),
-    "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
+    "dynamics.excitation": (
+        "meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "gears.solution", "dynamics.oscillator",
+    ),
     "dynamics.bodies": ("meshes",),
     "dynamics": (
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
@@ -106,7 +108,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "strength": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "gears.meshing", "gears.ring",
-        "gears.two_level", "gears", "gears.sweep",
+        "gears.two_level", "gears", "gears.sweep", "results.error_bars",
     ),
     "results.drawing": ("meshes", "meshes.gears", "scene", "results.archive", "results"),
     "results.figures": (
@@ -145,15 +147,16 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem",
-        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "scene.checking",
+        "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears",
+        "gears.solution", "scene", "scene.schema", "scene.checking",
         "results.archive", "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard",
         "strength.fatigue",
         "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
-        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
-        "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
+        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
+        "gears.solution", "scene", "scene.schema", "results.archive", "results.error_bars", "results.drawing",
+        "dynamics.*", "run",
     ),
     "run.dynamics.transient": (
         "meshes", "meshes.gears", "contact.transient.time_schemes", "fem.backend", "fem.parallel", "gears.problem",

@@ -8,11 +8,14 @@ the scene that asks for deflected flanks; so a scene that `run` solves is not re
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.gears.solution import certificates
+from evolvent.run.dynamics.excitation import ON_DEFLECTED, run_excitation
+from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.dynamics.transient import transient_run
 from evolvent.run.dynamics.transient.transient_run import run_transient
 from evolvent.run.strength.fatigue_run import run_fatigue
@@ -21,6 +24,8 @@ from evolvent.scene.scene import Scene, load_scene
 
 BENT, BETWEEN = 344, 2e-3
 ASKED = "skip.off=deflected-flanks"
+TORQUES = 50.0, 100.0
+"""Of the excitation, in percent."""
 pytestmark = pytest.mark.slow
 
 
@@ -44,7 +49,7 @@ def scene(path: Path, *settings: str) -> Scene:
 
 
 def same(first: Path, second: Path, *tables: str) -> None:
-    """Both folders have the same tables, and a scene that asks for deflected flanks."""
+    """Both folders have the same files."""
     for name in tables:
         assert (first / name).read_bytes() == (second / name).read_bytes(), name
 
@@ -76,3 +81,15 @@ def test_fatigue_has_its_flanks_deflected(bent: Path, tmp_path: Path) -> None:
     run_fatigue(scene(bent), found, quiet=True)
     run_fatigue(scene(bent, ASKED), asked, quiet=True)
     same(asked, found, "fatigue.csv", "fatigue.toml")
+
+
+def test_excitation_is_that_of_deflected_flanks(bent: Path, tmp_path: Path) -> None:
+    """Curves under two torques, and a sentence; resumed, nothing is solved again, and the sentence stays."""
+    found, asked = tmp_path / "found", tmp_path / "asked"
+    own, other = (scene_torques(scene(bent, "sweep.positions=12", *more), TORQUES) for more in ((), (ASKED,)))
+    said = run_excitation(own, found, quiet=True)
+    assert ON_DEFLECTED in said and ON_DEFLECTED not in run_excitation(other, asked, quiet=True)
+    same(asked, found, "excitation.csv", "harmonics.csv")
+    prepare: Any = None  # nothing calls it
+    assert run_excitation(own, found, resume=True, quiet=True, prepare=prepare) == said
+    same(asked, found, "excitation.csv", "harmonics.csv")

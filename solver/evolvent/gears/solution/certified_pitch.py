@@ -11,6 +11,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from mpi4py import MPI
 
@@ -21,6 +22,7 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.gears.sweep.position_result import PositionResult
 
 LOG = logging.getLogger("evolvent")
+T = TypeVar("T")
 Observer = Callable[[SweptPosition], object]
 """Called with each position once that is certified: archives it, or shows progress."""
 
@@ -68,17 +70,27 @@ def certified(
 
     Raises what `swept` does, and BalanceError.
     """
-    found: list[SweptPosition] = []
-    for position in swept(deflected):
-        certify(position.results)
-        observe(position)
-        found.append(position)
-    positions = one_pitch(found)
-    try:
+
+    def solved(deflected: bool) -> CertifiedPitch:
+        found: list[SweptPosition] = []
+        for position in swept(deflected):
+            certify(position.results)
+            observe(position)
+            found.append(position)
+        positions = one_pitch(found)
         certify_pitch(position.results for position in positions)
+        return CertifiedPitch(tuple(positions), deflected)
+
+    return balanced(solved, deflected)
+
+
+def balanced(solve: Callable[[bool], T], deflected: bool) -> T:
+    """What `solve` returns, on deflected flanks where it raises PitchImbalance without. deflected: whether the first
+    solution is on deflected flanks; there is no second one then."""
+    try:
+        return solve(deflected)
     except PitchImbalance as imbalance:
         if deflected:
             raise
         LOG.info("%s; solved again, on deflected flanks", imbalance)
-        return certified(swept, True, observe)
-    return CertifiedPitch(tuple(positions), deflected)
+    return solve(True)

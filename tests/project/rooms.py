@@ -89,14 +89,17 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
     "strength": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "gears.meshing", "gears.ring",
-        "gears.two_level", "gears", "gears.sweep",
+        "gears.two_level", "gears", "gears.sweep", "results.error_bars",
     ),
     "strength.results": (
         "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "results.drawing",
         "strength.standard", "strength.fatigue", "strength",
     ),
     "dynamics.oscillator": ("meshes", "fem.backend"),
-    "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
+    "dynamics.excitation": (
+        "meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "gears.solution",
+        "dynamics.oscillator",
+    ),
     "dynamics": (
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene.schema", "scene",
         "dynamics.oscillator", "dynamics.excitation",
@@ -140,14 +143,15 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem.parallel", "fem.backend", "gears.problem", "gears.meshing",
-        "gears", "gears.sweep", "gears.pressure", "gears.solution", "scene.schema", "scene", "results.archive",
+        "meshes.mesh", "meshes.gears", "fem.parallel", "fem.backend", "gears.problem", "gears.meshing",
+        "gears", "gears.pressure", "gears.solution", "scene.schema", "scene", "results.archive",
         "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard", "strength.fatigue",
         "strength", "strength.results", "run",
     ),
     "run.dynamics": (
-        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
-        "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
+        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
+        "gears.solution", "scene", "scene.schema", "results.archive", "results.error_bars", "results.drawing",
+        "dynamics.*", "run",
     ),
     "run.dynamics.transient": (
         "meshes", "meshes.gears", "fem.parallel", "fem.backend", "contact.transient.time_schemes", "gears.problem",

@@ -20,7 +20,7 @@ from evolvent.gears.gear_model import Mesher
 from evolvent.gears.meshing.root_meshes import RootMesh, finer_roots, with_back_root
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.results.error_bars.estimation import Curve
+from evolvent.results.error_bars.compared import Curve
 from evolvent.run.progress import Progress
 from evolvent.run.strength.pitch_roots import PitchRoots, pitch_roots
 from evolvent.scene.scene import Scene, load_scene, scene_from_text

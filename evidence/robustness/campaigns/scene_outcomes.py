@@ -12,10 +12,10 @@ import numpy as np
 from mpi4py import MPI
 
 from evidence.scenes import model_dofs
-from evolvent.gears.gear_model import GearModel, prepare_model
-from evolvent.gears.solution.certificates import BalanceError, PitchImbalance, certify, certify_pitch, pitch_imbalance
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
-from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
+from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.solution.certificates import BalanceError, pitch_imbalance
+from evolvent.gears.solution.certified_pitch import certified_pitch
+from evolvent.gears.sweep.pitch_sweep import Pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.errors import EvolventError
@@ -41,7 +41,7 @@ class Outcome:
     verdict: Verdict
     message: str = ""
     balance: float = nan
-    """Balance error of the pitch, at the worst friction coefficient."""
+    """Balance error of a pitch that converged, at the worst friction coefficient."""
     iterations: float = nan
     """Mean a position and friction coefficient above 0, or without friction where all are 0; `most` the largest."""
     most: int = 0
@@ -82,40 +82,22 @@ def last_line(message: str) -> str:
 
 
 def _solved(scene: Scene, seed: int, in_levels: bool) -> Outcome:
-    """Again on deflected flanks where the pitch alone is out of balance."""
+    """Again on deflected flanks where the pitch alone is out of balance, as `evolvent run` does."""
     problem = gear_problem(scene)
     if in_levels:
         problem = replace(problem, mesh=replace(problem.mesh, order=2, shape="hexahedron", two_level=True))
     model = prepare_model(problem, MPI.COMM_SELF).model
-    outcome, pitch_refused = _swept(model, scene, seed)
-    return _swept(replace(model, deflected=True), scene, seed)[0] if pitch_refused else outcome
-
-
-def _swept(model: GearModel, scene: Scene, seed: int) -> tuple[Outcome, bool]:
-    """And whether only the pitch was refused."""
-    pitch, frictions = some_positions(scene, seed), scene.contact.friction
-    swept = one_pitch(list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), MPI.COMM_SELF)))
-    results = [result for position in swept for result in position.results]
-    counted = [r for r in results if r.friction > 0.0] or results
-    refusal = _out_of_balance(swept)
-    outcome = Outcome(
-        seed,
-        Verdict.UNBALANCED if refusal else Verdict.CONVERGED,
-        str(refusal or ""),
-        max(map(pitch_imbalance, zip(*(position.results for position in swept), strict=True))),
-        float(np.mean([r.iterations for r in counted])),
-        max(r.iterations for r in counted),
-        model_dofs(model),
-    )
-    return outcome, isinstance(refusal, PitchImbalance)
-
-
-def _out_of_balance(swept: list[SweptPosition]) -> BalanceError | None:
-    """Why a run would refuse these positions of a pitch; None where it would not."""
     try:
-        for position in swept:
-            certify(position.results)
-        certify_pitch(position.results for position in swept)
+        solved = certified_pitch(model, some_positions(scene, seed), scene.contact.friction, MPI.COMM_SELF)
     except BalanceError as error:
-        return error
-    return None
+        return Outcome(seed, Verdict.UNBALANCED, str(error), dofs=model_dofs(model))
+    results = [result for position in solved.positions for result in position.results]
+    counted = [r for r in results if r.friction > 0.0] or results
+    return Outcome(
+        seed,
+        Verdict.CONVERGED,
+        balance=max(map(pitch_imbalance, solved.by_friction)),
+        iterations=float(np.mean([r.iterations for r in counted])),
+        most=max(r.iterations for r in counted),
+        dofs=model_dofs(model),
+    )

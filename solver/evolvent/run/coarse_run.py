@@ -11,26 +11,24 @@ its positions a quarter: on Yang's pair at standard a third of the processor tim
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
-
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_model import GearModel, Mesher, Preparation, Preparer, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.meshing.companion_meshes import companion_mesh
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
-from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
+from evolvent.gears.solution.certified_pitch import CertifiedPitch, certified_pitch
+from evolvent.gears.sweep.pitch_sweep import Pitch
 from evolvent.results.archive.error_bar_data import read_error_bars
 from evolvent.results.archive.gear_shapes import gear_shape
 from evolvent.results.error_bars.estimation import Companion
 from evolvent.results.run_data import RunData, run_data
+from evolvent.run.companion import attempted
 from evolvent.run.context import RunContext
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent_meshes.errors import EvolventError
+from evolvent.scene.skips import with_deflected_flanks
 
 
 def companion_of(run: RunContext, scene: Scene) -> Companion | None:
@@ -47,15 +45,10 @@ def companion_of(run: RunContext, scene: Scene) -> Companion | None:
 def solve_companion(scene: Scene, pitch: Pitch, comm: MPI.Comm, prepare: Preparer | None = None) -> Companion:
     """Meshes, condenses and sweeps the companion. Collective. prepare: see `RunContext`.
 
-    An error of meshing or solving becomes `Companion.failure`: a run is not lost for its error bars. Every other
-    exception is a bug and is raised.
+    An error of meshing or solving becomes `Companion.failure`, see `attempted`.
     """
-    begin, run, failure = time.perf_counter(), None, ""
-    try:
-        run = solved_run(scene, pitch, comm, companion_mesh, prepare)
-    except EvolventError as error:  # the same on all ranks: `solved_run` fails on all together
-        failure = f"The coarse companion that error bars come from could not be solved: {error}"
-    return Companion(run, failure, time.perf_counter() - begin)
+    found = attempted(lambda: solved_run(scene, pitch, comm, companion_mesh, prepare))
+    return Companion(found.value, found.reason, found.seconds)
 
 
 def solved_run(
@@ -63,20 +56,21 @@ def solved_run(
 ) -> RunData | None:
     """A scene solved on the sectors that `mesh` makes, without writing anything: the run on rank 0, None on the others.
 
-    prepare: see `RunContext`. Collective. Raises NotConverged, SearchError, MeshError, NotPositiveDefinite and
-    OutOfMemory, on all ranks.
+    prepare: see `RunContext`. Collective. Raises NotConverged, SearchError, BalanceError, MeshError,
+    NotPositiveDefinite and OutOfMemory, on all ranks.
     """
     preparation: Preparation = (prepare or prepare_model)(gear_problem(scene), comm, mesh)
-    model, frictions = preparation.model, scene.contact.friction
-    swept = list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm))
-    return as_run(scene, model, swept, comm)
+    solved = certified_pitch(preparation.model, pitch, scene.contact.friction, comm)
+    return as_run(scene, preparation.model, solved, comm)
 
 
-def as_run(scene: Scene, model: GearModel, swept: Sequence[SweptPosition], comm: MPI.Comm) -> RunData | None:
-    """The last pitch of swept positions as a run that was not written: on rank 0, None on the others. Collective."""
+def as_run(scene: Scene, model: GearModel, solved: CertifiedPitch, comm: MPI.Comm) -> RunData | None:
+    """A pitch as a run that was not written, of the scene that asks for its flanks: on rank 0, None on the others.
+    Collective."""
+    scene = with_deflected_flanks(scene) if solved.deflected else scene
 
     def assembled() -> RunData:
         shapes = [gear_shape(MeshedGear.of(body)) for body in model.bodies]
-        return run_data(scene, (shapes[0], shapes[1]), one_pitch(swept))
+        return run_data(scene, (shapes[0], shapes[1]), solved.positions)
 
     return together(comm, lambda: assembled() if comm.rank == 0 else None)

@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from evolvent.gears.gear_model import Preparation
+from evolvent.gears.gear_model import GearModel, Preparation
 from evolvent.gears.meshed_gear import MeshedGear
-from evolvent.gears.solution.certificates import PitchImbalance, balance_error, certify, certify_pitch
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
+from evolvent.gears.solution.certificates import balance_error
+from evolvent.gears.solution.certified_pitch import certified
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic, transmission_errors
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
@@ -18,10 +19,9 @@ from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.run.context import RunContext
 from evolvent.run.progress import POSITIONS
 from evolvent.run.start import ResumePoint, checked_meshes, open_archive, prepare_gears, timings_of
-from evolvent.scene.gear_problem import gear_problem, shares_gears
+from evolvent.scene.gear_problem import gear_options, gear_problem, shares_gears
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import with_deflected_flanks
-from evolvent_meshes.arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class SweepRecord:
 
 
 class ScenePitch:
-    """The positions of a scene's pitch. `generate` solves and certifies them, `solve` also archives them.
+    """One sweep over a scene's pitch. `generate` solves the positions, `keep` archives each once it is certified.
 
     All friction coefficients share the gears and the search. Where the scene switches that off, each coefficient has
     its own gears and is solved alone; the positions are put together at the end, because pitches at different
@@ -49,46 +49,68 @@ class ScenePitch:
     ) -> None:
         self.run, self.scene, self.archive, self.pitch = run, scene, run.archive(scene), pitch_of(scene)
         self.groups = friction_groups(scene)
-        self.resume = resume if len(self.groups) == 1 else None  # several groups leave nothing before the end
-        self.gears = gears
+        several = len(self.groups) > 1
+        self.resume = None if several and resume is not None and not resume.is_end else resume  # they end together
+        self.gears, self.kept = gears, 0
         self.meshes: MeshRecord | None = None
-        self.preparing = Timings()
-
-    def solve(self) -> SweepRecord:
-        """Solves and archives the positions. Collective; raises what `run_scene` does, on all ranks."""
-        begin = time.perf_counter()
-        for index, position in enumerate(self.generate(), len(self.completed)):
-            cost = self.run.cost(self._timings(begin), self.run.memory_MB())
-            self.run.on_first(partial(_keep, self.archive, index, position, cost))
-            self.run.log.info(_log_line(position))
-            self.run.progress.advance(more=not position.closes)
-        assert self.meshes is not None
-        return SweepRecord(self.meshes, self._timings(begin))
+        self.preparing, self.timings = Timings(), Timings()
 
     def generate(self) -> Iterator[SweptPosition]:
-        """The positions that are still missing, one after the other, each certified."""
+        """All positions, one after the other: the completed ones, then those that are missing. Collective."""
+        yield from self.completed
+        if self.resume is not None and self.resume.is_end:  # the gears need not be condensed
+            self.run.log.open()
+            self.run.log.info("resumed after all of %d positions", len(self.completed))
+            self.meshes = self.run.on_first(lambda: checked_meshes(self.scene, self.archive))
+            return
         if self.completed:
             self.run.log.info("resumed after %d positions", len(self.completed))
-        if len(self.groups) == 1:
-            yield from self._group(self.groups[0])
-        else:
-            yield from _joined_groups([list(self._group(group)) for group in self.groups])
+        begin = time.perf_counter()
+        solved = self._group(self.groups[0]) if len(self.groups) == 1 else self._joined_groups()
+        for position in solved:
+            self.timings = self._timings(begin)
+            yield position
+        self.timings = self._timings(begin)
+
+    def keep(self, position: SweptPosition) -> None:
+        """Archives and logs a position of `generate`, unless it has been archived before. Collective; raises
+        WriteError, FolderError."""
+        self.kept += 1
+        if self.kept <= len(self.completed):
+            return
+        cost = self.run.cost(self.timings, self.run.memory_MB())
+        self.run.on_first(partial(_keep, self.archive, self.kept - 1, position, cost))
+        self.run.log.info(_log_line(position))
+        self.run.progress.position(position)
+
+    def deflected(self) -> ScenePitch:
+        """The sweep to make after this one, on the same gears, where its energy does not balance."""
+        gears, run = self.gears, replace(self.run, earlier=self.run.earlier + Cost(self.timings))
+        if gears is not None:
+            gears = replace(gears, model=replace(gears.model, deflected=True))
+        return ScenePitch(run, with_deflected_flanks(self.scene), gears=gears)
 
     @property
-    def completed(self) -> Sequence[Floats]:
-        """Transmission errors of the positions that are archived already."""
-        return () if self.resume is None else self.resume.errors
+    def completed(self) -> Sequence[SweptPosition]:
+        """Positions that are archived already."""
+        return () if self.resume is None else self.resume.positions
 
     def _group(self, group: slice) -> Iterator[SweptPosition]:
-        """The positions at some of the friction coefficients."""
+        """The missing positions at some of the friction coefficients."""
         gears, frictions = self._prepared(), self.scene.contact.friction[group]
         self.run.progress.stage(POSITIONS, len(self.pitch.angles), len(self.completed))
         state = initial_state(frictions) if self.resume is None else self.resume.state
-        for position in sweep_until_periodic(gears.model, self.pitch, frictions, state, self.run.comm, self.completed):
-            certify(position.results)
-            yield position
+        before = [transmission_errors(position, frictions) for position in self.completed]
+        yield from sweep_until_periodic(gears, self.pitch, frictions, state, self.run.comm, before)
 
-    def _prepared(self) -> Preparation:
+    def _joined_groups(self) -> Iterator[SweptPosition]:
+        """The pitch at all friction coefficients, from the positions of each group."""
+        groups = [one_pitch(list(self._group(group))) for group in self.groups]
+        pitch = [joined(parts) for parts in zip(*groups, strict=True)]
+        for position in pitch:
+            yield replace(position, again=False, closes=position is pitch[-1])
+
+    def _prepared(self) -> GearModel:
         """The condensed gears; the archive is opened for their meshes."""
         gears = self.gears
         if gears is None:
@@ -99,7 +121,7 @@ class ScenePitch:
             self.meshes = meshes = MeshRecord.of([MeshedGear.of(body) for body in gears.model.bodies])
             resumed = self.resume is not None
             self.run.on_first(lambda: open_archive(self.scene, self.archive, meshes, resumed))
-        return gears
+        return gears.model
 
     def _timings(self, begin: float) -> Timings:
         """Wall time since `begin`: whatever was not preparation was solving."""
@@ -113,45 +135,16 @@ def sweep_scene(run: RunContext, scene: Scene, resume: ResumePoint | None) -> tu
 
     Collective; raises what `run_scene` does, on all ranks.
     """
-    if resume is not None and resume.is_end:
-        first, record = None, _finished(run, scene, resume)
-    else:
-        first = ScenePitch(run, scene, resume)
-        record = first.solve()
-    imbalance = run.on_first(lambda: _imbalance(run, scene))
-    if imbalance is None:
-        return scene, record
-    deflected = with_deflected_flanks(scene)
-    if deflected is scene:
-        raise imbalance
-    run.log.info("%s", imbalance)
-    run.log.info("solved again, on deflected flanks")
-    gears = None if first is None or first.gears is None else _on_deflected_flanks(first.gears)
-    again = ScenePitch(replace(run, earlier=run.earlier + Cost(record.timings)), deflected, gears=gears).solve()
-    if imbalance := run.on_first(lambda: _imbalance(run, deflected)):
-        raise imbalance
-    return deflected, SweepRecord(again.meshes, record.timings + again.timings)
+    sweeps: list[ScenePitch] = []
 
+    def swept(_: bool) -> Iterator[SweptPosition]:
+        sweeps.append(sweeps[-1].deflected() if sweeps else ScenePitch(run, scene, resume))
+        return sweeps[-1].generate()
 
-def _finished(run: RunContext, scene: Scene, resume: ResumePoint) -> SweepRecord:
-    """A sweep that an earlier run has completed: the gears need not be condensed."""
-    run.log.open()
-    run.log.info("resumed after all of %d positions", len(resume.errors))
-    return SweepRecord(run.on_first(lambda: checked_meshes(scene, run.archive(scene))), Timings())
-
-
-def _imbalance(run: RunContext, scene: Scene) -> PitchImbalance | None:
-    """Why the archived pitch is not certified, None where it is."""
-    positions = run.archive(scene).read_positions(scene.gear_pair())
-    try:
-        certify_pitch(position.results for position in positions)
-    except PitchImbalance as error:
-        return error
-    return None
-
-
-def _on_deflected_flanks(gears: Preparation) -> Preparation:
-    return replace(gears, model=replace(gears.model, deflected=True))
+    certified(swept, gear_options(scene).deflected_flanks, lambda position: sweeps[-1].keep(position))
+    last = sweeps[-1]
+    assert last.meshes is not None
+    return last.scene, SweepRecord(last.meshes, sum((each.timings for each in sweeps), Timings()))
 
 
 def _keep(archive: Archive, index: int, position: SweptPosition, cost: Cost) -> None:
@@ -164,13 +157,6 @@ def friction_groups(scene: Scene) -> list[slice]:
     """The friction coefficients that share gears, search and compliance: all in one group, or each in its own."""
     count = len(scene.contact.friction)
     return [slice(0, count)] if shares_gears(scene) else [slice(i, i + 1) for i in range(count)]
-
-
-def _joined_groups(groups: Sequence[list[SweptPosition]]) -> Iterator[SweptPosition]:
-    """The pitch at all friction coefficients, from the positions of each group."""
-    pitch = [joined(parts) for parts in zip(*(one_pitch(positions) for positions in groups), strict=True)]
-    for position in pitch:
-        yield replace(position, again=False, closes=position is pitch[-1])
 
 
 def pitch_of(scene: Scene) -> Pitch:

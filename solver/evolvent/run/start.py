@@ -14,8 +14,7 @@ from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparation, prepare_model
 from evolvent.gears.meshed_gear import meshed_gear
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.sweep.periodic_pitch import transmission_errors
-from evolvent.gears.sweep.pitch_sweep import SweepState
+from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Timings
@@ -27,20 +26,22 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import with_deflected_flanks
-from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
 class ResumePoint:
-    """The last position that an earlier run has completed."""
+    """What an earlier run has completed."""
 
-    errors: tuple[Floats, ...]
-    """Transmission errors of the completed positions (`transmission_errors`), (frictions,) [mm] each."""
-    is_end: bool
-    """Whether no position is left to be solved."""
+    positions: tuple[SweptPosition, ...]
+    """The completed positions in the order of their solution."""
     state: SweepState
     """State of the sweep after these positions."""
+
+    @property
+    def is_end(self) -> bool:
+        """Whether no position is left to be solved."""
+        return bool(self.positions) and self.positions[-1].closes
 
 
 def resume_point(scene: Scene, archive: Archive, resume: bool) -> ResumePoint | None:
@@ -49,9 +50,7 @@ def resume_point(scene: Scene, archive: Archive, resume: bool) -> ResumePoint | 
     state = archive.read_state(pair) if resume else None
     if state is None:
         return None
-    swept = archive.read_sweep(pair)
-    errors = tuple(transmission_errors(position, scene.contact.friction) for position in swept)
-    return ResumePoint(errors, bool(swept) and swept[-1].closes, state)
+    return ResumePoint(tuple(archive.read_sweep(pair)), state)
 
 
 def no_results_warning(scene: Scene, archive: Archive) -> str:

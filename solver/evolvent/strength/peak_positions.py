@@ -17,7 +17,7 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, sweep_pitch
-from evolvent.strength.peak_bounds import beside_largest
+from evolvent.results.error_bars.peak_bounds import beside_largest
 from evolvent.strength.root_passage import GearRoots, root_passages
 
 GAIN = 0.005

@@ -31,7 +31,7 @@ def test_solver_error_costs_the_error_bars_only(kind: type[Exception], monkeypat
     scene = spur_scene()
     companion = solve_companion(scene, pitch_of(scene), MPI.COMM_SELF)
     assert companion.run is None
-    assert companion.failure == "The coarse companion that error bars come from could not be solved: no equilibrium"
+    assert companion.failure == "Error bars: their coarse companion could not be solved: no equilibrium"
 
 
 @pytest.mark.parametrize("kind", [TypeError, AttributeError, AssertionError, ValueError, KeyError])

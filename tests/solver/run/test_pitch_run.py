@@ -53,21 +53,33 @@ def test_pitch_generates_its_positions_in_order(run: RunContext) -> None:
 
 
 def test_solved_pitch_is_resumed_at_its_end(run: RunContext, prepared: list[int]) -> None:
-    """`solve` archives all positions; resumed there, the gears are not condensed again and no time is spent."""
+    """All positions are archived; resumed there, the gears are not condensed again and no time is spent."""
     scene = scene_of("contact.friction=0.0")
-    record = ScenePitch(run, scene).solve()
+    _, record = sweep_scene(run, scene, None)
     assert record.timings.positions > 0.0 and record.timings.total > record.timings.factor > 0.0
     end = resume_point(scene, run.archive(scene), True)
-    assert end is not None and end.is_end and len(end.errors) == 3
+    assert end is not None and end.is_end and len(end.positions) == 3
     _, again = sweep_scene(run, scene, end)
     assert len(prepared) == 1 and again.timings.total == 0.0
 
 
-def test_position_out_of_balance_is_not_generated(run: RunContext, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A position that fails its certificate is raised as BalanceError before anybody sees it."""
+def test_position_out_of_balance_is_not_archived(run: RunContext, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A position that fails its certificate is raised as BalanceError before it is archived."""
     monkeypatch.setattr(certificates, "STORED_LIMIT", -1.0)
+    scene = scene_of("contact.friction=0.0")
     with pytest.raises(BalanceError, match="wanted a balance error of at most"):
-        next(ScenePitch(run, scene_of("contact.friction=0.0")).generate())
+        sweep_scene(run, scene, None)
+    assert resume_point(scene, run.archive(scene), True) is None
+
+
+def test_finished_friction_groups_are_not_solved_again(run: RunContext, prepared: list[int]) -> None:
+    """Coefficients with gears of their own, resumed at their end: no gear is condensed again."""
+    scene = scene_of("contact.friction=[0.0, 0.2]", "skip.off=reuse")
+    sweep_scene(run, scene, None)
+    end = resume_point(scene, run.archive(scene), True)
+    assert len(prepared) == 2 and end is not None and end.is_end
+    _, again = sweep_scene(run, scene, end)
+    assert len(prepared) == 2 and again.timings.total == 0.0
 
 
 def test_unbalanced_pitch_is_solved_again_on_the_same_gears(
@@ -88,7 +100,7 @@ def test_friction_coefficients_in_groups_give_the_same_pitch(tmp_path: Path, pre
     for name, settings in (("together", ()), ("alone", ("skip.off=reuse",))):
         scene = scene_of("contact.friction=[0.0, 0.2]", *settings)
         with run_context(RunFolder(tmp_path / name), MPI.COMM_SELF, resume=False, quiet=True, begin=0.0) as run:
-            ScenePitch(run, scene).solve()
+            sweep_scene(run, scene, None)
             swept = run.archive(scene).read_positions(scene.gear_pair())
         errors.append([result.transmission_error for position in swept for result in position.results])
     assert len(friction_groups(scene)) == 2 and len(prepared) == 3

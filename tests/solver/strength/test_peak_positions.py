@@ -12,8 +12,8 @@ from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state, uniform_pitch
+from evolvent.results.error_bars.peak_bounds import beside_largest
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.strength.peak_bounds import beside_largest
 from evolvent.strength.peak_positions import (
     GAIN,
     NARROWEST,

@@ -1,6 +1,8 @@
 """The mesh under several torques: transmission error and tangent stiffness over the pitch, without friction.
 
-Gears are condensed once; each torque is solved from where the last one, and the last position, have led.
+Gears are condensed once; each torque is solved from where the last one, and the last position, have led. Every position
+is certified. Without friction the input of a whole pitch is its output under each torque, as no energy stays in the
+teeth: so the pitch is certified as that of a sweep is, with the same limit (`certify_torques`).
 """
 
 from __future__ import annotations
@@ -16,7 +18,10 @@ from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand
+from evolvent.gears.solution.certificates import certify, energy_imbalance, require_balance
+from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
 from evolvent.gears.sweep.parallel_sweep import division
+from evolvent.gears.sweep.position_result import position_result
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from evolvent.gears.sweep.worn_position import worn_on
 from evolvent_meshes.arrays import Floats
@@ -24,7 +29,9 @@ from evolvent_meshes.arrays import Floats
 Positions = tuple[Mapping[float, SharedPosition], ...]
 """A rank's positions, each by its torque [N·mm]."""
 Figures = Mapping[int, Floats]
-"""Number of a position -> (m, 2) transmission error [mm] and tangent stiffness [N/mm] under each torque."""
+"""Number of a position -> (m, 4) under each torque: `figures_of`."""
+COLUMNS = 4
+"""Of these figures."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +46,8 @@ class LoadedMesh:
     """(n, m) transmission error r_b1 φ_1 − r_b2 φ_2 [mm]."""
     stiffness: Floats
     """(n, m) tangent stiffness dF/ds [N/mm], of the whole face."""
+    deflected: bool = False
+    """Whether contact was searched again on deflected flanks."""
 
 
 def loaded_mesh(
@@ -46,6 +55,15 @@ def loaded_mesh(
     known: Figures = MappingProxyType({}),
     keep: Callable[[Figures], None] = lambda _: None,
 ) -> LoadedMesh:
+    """The mesh at some positions, see `solved_figures`, which need not be a pitch."""
+    forces = np.array(torques) / _radius(model)
+    return mesh_of(solved_figures(model, torques, angles, comm, known, keep), forces, angles, model.deflected)
+
+
+def solved_figures(
+    model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm, known: Figures,
+    keep: Callable[[Figures], None],
+) -> Figures:
     """Solves all positions under all torques; the ranks divide the positions, and each solves one at a time.
 
     model: of the gears under any torque.
@@ -53,7 +71,7 @@ def loaded_mesh(
     known: positions that were solved before.
     keep: called with all positions that are solved, on all ranks, each time that they have solved another one.
 
-    Raises NotConverged, SearchError.
+    Raises NotConverged, SearchError, BalanceError.
     """
     models, found = under_torques(model, torques), dict(known)
     missing = [i for i in range(len(angles)) if i not in known]
@@ -69,13 +87,21 @@ def loaded_mesh(
         for each in comm.allgather(solved_now):
             found |= each
         keep(found)
-    return mesh_of(found, np.array(torques) / _radius(model), angles)
+    return found
 
 
-def mesh_of(found: Figures, forces: Floats, angles: Floats) -> LoadedMesh:
+def certify_torques(found: Figures, torques: Sequence[float]) -> None:
+    """Raises PitchImbalance where the pitch is out of balance under one of the torques (m,) [N·mm]. found: of equal
+    steps of a whole pitch."""
+    _, _, given, stored = np.moveaxis(np.array(list(found.values())), -1, 0)
+    for torque, imbalance in zip(torques, energy_imbalance(stored, given)):
+        require_balance(float(imbalance), f"under {1e-3 * torque:.4g} N·m")
+
+
+def mesh_of(found: Figures, forces: Floats, angles: Floats, deflected: bool = False) -> LoadedMesh:
     """Of all positions. forces: (m,) along the line of action [N]."""
     figures = np.array([found[i] for i in range(len(angles))])
-    return LoadedMesh(angles, forces, figures[..., 0], figures[..., 1])
+    return LoadedMesh(angles, forces, figures[..., 0], figures[..., 1], deflected)
 
 
 def loaded_mesh_again(
@@ -109,9 +135,16 @@ def _radius(model: GearModel) -> float:
     return model.bodies[model.load.on].gear.base_radius
 
 
-def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float]:
-    """Transmission error [mm] and stiffness [N/mm]."""
-    return equilibrium(model, position).transmission_error, position.stiffness * model.width_factor
+def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float, float, float]:
+    """Transmission error [mm] and stiffness [N/mm] of a position, its torque on the pinion and the power that its teeth
+    store (`PositionResult.stored_power`). Raises NotConverged and SearchError on deflected flanks; BalanceError."""
+    contact, smooth, stiffness = position.contact, position.smooth, position.stiffness
+    if model.deflected:
+        found = deflected_equilibrium(model, contact, smooth, 0.0, None, 0.0)
+        contact, smooth, stiffness = found.contact, found.equilibrium, found.stiffness
+    result = position_result(model, contact, smooth, 0.0, stiffness, 0)
+    certify([result])
+    return result.transmission_error, stiffness * model.width_factor, result.torques[0], result.stored_power
 
 
 def equilibrium(model: GearModel, position: SharedPosition) -> Stand:

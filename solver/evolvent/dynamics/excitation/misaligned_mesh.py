@@ -18,12 +18,12 @@ from evolvent_meshes.arrays import Floats
 
 
 def misaligned_figures(models: Sequence[GearModel], angles: Floats) -> Iterator[Floats]:
-    """(m, 2) transmission error [mm] and tangent stiffness [N/mm] of each model, position by position.
+    """(m, 4) figures of each model (`figures_of`), position by position.
 
     models: m, of the same gears under the same torque, at ascending misalignments.
     angles: of the pinion [rad].
 
-    Raises NotConverged, SearchError.
+    Raises NotConverged, SearchError, BalanceError.
     """
     middle, last = len(models) // 2, None
     for angle in angles:

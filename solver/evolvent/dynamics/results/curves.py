@@ -10,16 +10,15 @@ stiffness of a position is known only to belong to one of both states.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from operator import itemgetter
 
 import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.harmonics import COUNT, mesh_harmonics
-from evolvent.results.error_bars.estimation import STIFFNESS_FACTOR, Curve, Reduction, difference
+from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve, Reduction
 from evolvent.results.error_bars.position_spacing import (
     JUMP,
     KINK,
@@ -48,9 +47,6 @@ deflection goes with the logarithm of its width, and that of a contact narrower 
 size: each halving of the elements then takes off the same, and log2(element over width) times that is left. He's pair,
 order 2, transmission error: nine in ten errors are below 1.5, 1.0, 0.6, 0.4 times the difference to elements of twice
 the size at 0.27, 0.38, 0.6 and 0.85 elements across the width."""
-VARYING_FACTOR = {1: 2.0, 2: 1.0}
-"""Order of the cells -> 1/(2^p − 1) for peak-to-peak values and harmonics, which depend on when teeth come into
-contact; p = 0.6 and 1, as for the loss. With 0.5 at order 2, a quarter of the bars of He's pair were too small."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,28 +85,28 @@ class PitchCurve:
     @property
     def bars(self) -> Floats:
         """Errors (n,) of the mesh at each position; NaN where they are not known."""
-        return np.array([self.mesh_error(itemgetter(i)) for i in range(len(self.values))])
+        if self.coarse is None:
+            return np.full(len(self.values), np.nan)
+        return self._compared(STIFFNESS).of_each(np.abs(self.values))
 
     def mesh_error(self, figure: Reduction) -> float:
         """Error of a figure by the mesh; NaN where it is not known."""
-        return max(STIFFNESS_FACTOR[self.order], self._halvings) * self._difference(figure, 0.0)
+        return float("nan") if self.coarse is None else self._compared(STIFFNESS).of_figure(figure)
 
     def varying_error(self, figure: Reduction) -> float:
         """The same of a figure that does not depend on the mean of the curve."""
-        return max(VARYING_FACTOR[self.order], self._halvings) * self._difference(figure, 1.0)
+        return float("nan") if self.coarse is None else self._compared(SHARING).of_varying(figure)
 
     @property
     def _halvings(self) -> float:
         """How often elements would have to be halved to be as small as the contact is wide."""
         return max(0.0, -math.log2(self.elements / NARROW))
 
-    def _difference(self, figure: Reduction, less: float) -> float:
-        """See `estimation.difference`. less: part of the means that both curves are without."""
-        if self.coarse is None:
-            return float("nan")
-        place = np.arange(len(self.values), dtype=float)
-        first, second = (Curve(place, each - less * each.mean()) for each in (self.values, self.coarse))
-        return difference(figure, first, second)
+    def _compared(self, factors: Mapping[int, float]) -> Compared:
+        """The curve beside that of the companion, which is known. factors: by the order of the cells."""
+        assert self.coarse is not None
+        place, factor = np.arange(len(self.values), dtype=float), max(factors[self.order], self._halvings)
+        return Compared(Curve(place, self.values), Curve(place, self.coarse), factor)
 
     @cached_property
     def mean_error(self) -> float:

@@ -3,7 +3,7 @@
 The error of a figure at a speed has two parts, each a multiple of how far the figure is off on another excitation:
 
 - The mesh: on elements of twice the size at the same positions. The factor is that of what varies over the pitch in the
-  excitation (`curves.VARYING_FACTOR`), for that is what excites.
+  excitation (`compared.SHARING`), for that is what excites.
 - The spacing of positions: on every other position of the same mesh, from the first on and from the second on. The
   excitation is a spline through its positions. Where a tooth pair comes into contact the stiffness jumps within a step,
   so that harmonics of the spline are off in proportion to the step: half the step has half the error, and the

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from evolvent.gears.sweep.position_result import PositionResult
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 
 BALANCE_LIMIT = 1e-2
@@ -42,7 +46,12 @@ def pitch_imbalance(results: Sequence[PositionResult]) -> float:
     taken before deflection: it falls with the load, not with the mesh (7e-4 where the contact's half-width is 3 % of
     the radius of curvature and tips bear; a fifteenth of that at a tenth of the load, and on deflected flanks).
     """
-    return abs(sum(r.stored_power for r in results)) / sum(abs(r.torques[0]) for r in results)
+    return float(energy_imbalance([r.stored_power for r in results], [r.torques[0] for r in results]))
+
+
+def energy_imbalance(stored: ArrayLike, given: ArrayLike) -> Floats:
+    """The same of stored powers (n, ...) and torques of the pinion (n, ...) at n positions."""
+    return np.asarray(np.abs(np.sum(stored, axis=0)) / np.sum(np.abs(given), axis=0))
 
 
 def certify(results: Iterable[PositionResult]) -> None:
@@ -62,9 +71,13 @@ def certify_pitch(positions: Iterable[Sequence[PositionResult]]) -> None:
     positions: all of the pitch, each with one result per friction coefficient.
     """
     for results in zip(*positions, strict=True):
-        error = pitch_imbalance(results)
-        if not error <= BALANCE_LIMIT:
-            raise PitchImbalance(
-                f"the pitch at μ = {results[0].friction}: wanted an energy balance within {BALANCE_LIMIT} of the "
-                f"input, found {error:.2e}; {REMEDY}"
-            )
+        require_balance(pitch_imbalance(results), f"at μ = {results[0].friction}")
+
+
+def require_balance(imbalance: float, where: str) -> None:
+    """Raises PitchImbalance where it exceeds `BALANCE_LIMIT`. where: friction coefficient or torque of the pitch."""
+    if not imbalance <= BALANCE_LIMIT:
+        raise PitchImbalance(
+            f"the pitch {where}: wanted an energy balance within {BALANCE_LIMIT} of the input, found {imbalance:.2e}; "
+            f"{REMEDY}"
+        )

@@ -5,9 +5,8 @@ On several ranks all of them call these functions, and all get all results.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
@@ -21,14 +20,12 @@ from evolvent.gears.pressure.line_peaks import LinePeak
 from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.problem.load_limits import check_load
-from evolvent.gears.solution.certificates import PitchImbalance, certify, certify_pitch
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
+from evolvent.gears.solution.certificates import certify
+from evolvent.gears.solution.certified_pitch import certified_pitch
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.input_checks import instance, is_index, number, numbers, refuse
-
-LOG = logging.getLogger("evolvent")
 
 
 class ExtendedChartWarning(UserWarning):
@@ -179,24 +176,14 @@ def solve_pitches(
     check_frictions(frictions)
     check_positions(positions)
     pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches)
-    swept = one_pitch(list(sweep_until_periodic(gears, pitch, list(frictions), initial_state(frictions), comm)))
-    for position in swept:
-        certify(position.results)
-    try:
-        certify_pitch(position.results for position in swept)
-    except PitchImbalance as imbalance:
-        if gears.deflected:
-            raise
-        LOG.info("%s; solved again, on deflected flanks", imbalance)
-        return solve_pitches(replace(gears, deflected=True), frictions, positions, comm)
-    by_position = [position.results for position in swept]
-    pressures = pitch_pressures(gears, by_position)
+    solved = certified_pitch(gears, pitch, list(frictions), comm)
+    pressures = pitch_pressures(gears, [position.results for position in solved.positions])
     cells = [_cells_across(gears, pressure) for pressure in pressures]
     if comm.rank == 0:
         _warn_if_coarse(min(cells))
     return tuple(
-        PitchSolution(friction, results, pressure, gears.width_factor, count, gears.deflected)
-        for friction, results, pressure, count in zip(frictions, zip(*by_position), pressures, cells)
+        PitchSolution(friction, results, pressure, gears.width_factor, count, solved.deflected)
+        for friction, results, pressure, count in zip(frictions, solved.by_friction, pressures, cells)
     )
 
 

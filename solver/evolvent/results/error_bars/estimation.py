@@ -1,8 +1,7 @@
 """Error bars of the engineering figures, from a run and its coarse companion.
 
-Each figure Q is computed from a curve over the engagement or over the pitch. Figures on two meshes may agree by chance
-where their curves do not. The difference D of a figure is therefore the larger of |Q_h − Q_2h| and of Q times the
-relative root mean square difference of the curves.
+Each figure is computed from a curve over the engagement or over the pitch, and compared with that of the companion:
+D and the rates p are those of `compared`.
 
 - Transmission error, mesh stiffness and loss: D/(2^p − 1), Richardson's estimate, with the lowest convergence rate p of
   the benchmark pairs. First-order cells are too stiff in bending; their rate is below 1.
@@ -23,7 +22,6 @@ Both meshes are solved at the same positions. The error of sampling the pitch at
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,32 +36,11 @@ from evolvent.results.archive.error_bar_data import (
     write_error_bars,
 )
 from evolvent.results.engagement import engagement, with_hertz, with_line_loads
-from evolvent.results.error_bars.position_spacing import spacing_errors
+from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve, Reduction
+from evolvent.results.error_bars.position_spacing import PositionFigure, spacing_errors
 from evolvent.results.face_load import FaceLoad, face_load
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from evolvent.results.run_data import RunData
-from evolvent_meshes.arrays import Floats
-
-Reduction = Callable[[Floats], float]
-"""Function from the values (n,) of a curve to a figure."""
-
-STIFFNESS_FACTOR = {1: 2.0, 2: 0.5}
-"""Order of the cells -> 1/(2^p − 1) for transmission error and mesh stiffness; p = 0.6 and 1.6."""
-LOSS_FACTOR = {1: 2.0, 2: 1.0}
-"""The same for the loss, which depends on the distribution of pressure and of tooth forces; p = 0.6 and 1."""
-LOAD_FACTOR = {1: 2.0, 2: 1.0}
-"""The same for the loads of slices and over the face; with 1 at order 1, 3 of 24 bars of pressures were too small, by
-2 %."""
-
-
-@dataclass(frozen=True)
-class Curve:
-    """A curve from which a figure is computed."""
-
-    angle: Floats
-    """(n,) pinion rotation [rad]."""
-    values: Floats
-    """(n,) values in the figure's unit; NaN where unknown."""
 
 
 @dataclass(frozen=True)
@@ -110,50 +87,34 @@ def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
     """Errors of the mesh at the friction coefficient with this index."""
     runs = run, with_hertz(run), with_line_loads(run), with_line_loads(coarse)
     curves = [engagement(each, index, run.inner_path) for each in runs]
-    error, tangent, secant, loss = (
-        [Curve(each.angles, np.array([value(each, at[index]) for at in each.positions])) for each in (run, coarse)]
-        for value in (transmission_error_um, mesh_stiffness, secant_stiffness, loss_percent)
-    )
+    stiffness, factor = STIFFNESS[run.scene.mesh.order], SHARING[run.scene.mesh.order]
+
+    def over_pitch(value: PositionFigure, factor: float) -> Compared:
+        own, other = (
+            Curve(each.angles, np.array([value(each, at[index]) for at in each.positions])) for each in (run, coarse)
+        )
+        return Compared(own, other, factor)
+
     peaks = [Curve(*each.pressure_curve) for each in curves]
     means = [Curve(each.angle, each.mean_pressure) for each in curves]
-    order = run.scene.mesh.order
     return FigureErrors(
-        max_pressure_MPa=_pressure_error(np.nanmax, LOAD_FACTOR[order], *peaks),
-        mean_pressure_MPa=_pressure_error(np.nanmean, LOAD_FACTOR[order], *means),
-        transmission_error_peak_to_peak_um=STIFFNESS_FACTOR[order] * difference(np.ptp, *error),
-        mesh_stiffness_N_per_mm_um=STIFFNESS_FACTOR[order] * difference(np.mean, *tangent),
-        secant_stiffness_N_per_mm_um=STIFFNESS_FACTOR[order] * difference(np.mean, *secant),
-        loss_percent=LOSS_FACTOR[order] * difference(np.mean, *loss),
-        face_load_factor=LOAD_FACTOR[order] * _face_difference(face_load(run, index), face_load(coarse, index)),
+        max_pressure_MPa=_pressure_error(np.nanmax, factor, *peaks),
+        mean_pressure_MPa=_pressure_error(np.nanmean, factor, *means),
+        transmission_error_peak_to_peak_um=over_pitch(transmission_error_um, stiffness).of_figure(np.ptp),
+        mesh_stiffness_N_per_mm_um=over_pitch(mesh_stiffness, stiffness).of_figure(np.mean),
+        secant_stiffness_N_per_mm_um=over_pitch(secant_stiffness, stiffness).of_figure(np.mean),
+        loss_percent=over_pitch(loss_percent, factor).of_figure(np.mean),
+        face_load_factor=_face_error(face_load(run, index), face_load(coarse, index), factor),
     )
 
 
 def _pressure_error(figure: Reduction, factor: float, fitted: Curve, hertz: Curve, fine: Curve, coarse: Curve) -> float:
     """Error of the fitted peaks for the computed loads, plus the error of the loads. fine, coarse: peaks that
     depend on the line loads alone, on both meshes, tip edges included."""
-    return difference(figure, fitted, hertz) + factor * difference(figure, fine, coarse)
+    return Compared(fitted, hertz).of_figure(figure) + Compared(fine, coarse, factor).of_figure(figure)
 
 
-def _face_difference(fine: FaceLoad, coarse: FaceLoad) -> float:
-    """Difference D of the face load factor, with the root mean square of the loads averaged over the coarse layers."""
-    curves = Curve(coarse.z, fine.on_layers(coarse.ends)), Curve(coarse.z, coarse.relative())
-    value = fine.factor()
-    return max(abs(value - coarse.factor()), value * relative_difference(*curves))
-
-
-def difference(figure: Reduction, first: Curve, second: Curve) -> float:
-    """Difference D of a figure between two curves: the larger of |Q_1 − Q_2| and of |Q_1| times the relative root mean
-    square difference of the curves where both are known; NaN where no rotation is common to both."""
-    value = float(figure(first.values))
-    return max(abs(value - float(figure(second.values))), abs(value) * relative_difference(first, second))
-
-
-def relative_difference(first: Curve, second: Curve) -> float:
-    """Root mean square difference of two curves over that of the first, at their common rotations; NaN without any."""
-    _, i, j = np.intersect1d(np.round(first.angle, 9), np.round(second.angle, 9), return_indices=True)
-    one, other = first.values[i], second.values[j]
-    known = np.isfinite(one) & np.isfinite(other)
-    if not known.any():
-        return float("nan")
-    size = np.linalg.norm(one[known])
-    return float(np.linalg.norm(one[known] - other[known]) / size) if size > 0.0 else 0.0
+def _face_error(fine: FaceLoad, coarse: FaceLoad, factor: float) -> float:
+    """Error of the face load factor, with the root mean square of the loads averaged over the coarse layers."""
+    layers = Compared(Curve(coarse.z, fine.on_layers(coarse.ends)), Curve(coarse.z, coarse.relative()), factor)
+    return layers.of_value(fine.factor(), coarse.factor())

@@ -6,10 +6,8 @@ difference of the two estimates the error. With an odd number of positions two n
 each position with its share of the periodic pitch. Thinning misses features between two positions. The error is the
 larger of this estimate and of one of the following:
 
-- For an extreme: how far the curve may exceed its samples between two positions if it continues straight from both
-  sides. Where the two lines intersect there is a kink, or a smooth top a quarter as high; the curve counts as smooth in
-  proportion to its bends at the neighbouring samples. Where the lines do not intersect the curve jumps, as pressures
-  nearly do, on average in the middle. All intervals are examined, since a peak may be narrower than one.
+- For an extreme: how far the curve may exceed its samples between two positions, see `peak_bounds.tops`. All intervals
+  are examined, since a peak may be narrower than one.
 - For a mean: the effect of a kink or jump at an unknown place between two positions. A jump by J changes the mean of n
   values by at most J/2n. A kink that changes the step from one position to the next by J changes it by J/12n on
   average, and the step in which it lies shows about half of J. The contributions of different intervals are
@@ -36,6 +34,7 @@ import numpy as np
 
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.engagement import Engagement, EngagementPeak, engagement
+from evolvent.results.error_bars.peak_bounds import tops
 from evolvent.results.face_load import FaceLoad, face_load
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from evolvent.results.run_data import RunData, SolvedPosition
@@ -43,9 +42,6 @@ from evolvent_meshes.arrays import Floats, Ints
 
 JUMP, KINK = 0.5, 1.0 / 6.0
 """Error of a step's mean over the bend of the step, for a jump and for a kink at an unknown place in it."""
-SMOOTH = 0.75
-"""Part of the height of the intersection of two lines above the samples that a parabola with these slopes does not
-reach."""
 SCATTERS = 2.0
 """Allowance for the largest of a hundred scattered pressures exceeding the largest of ten, in standard deviations."""
 DEVIATIONS = 0.6745
@@ -53,8 +49,6 @@ DEVIATIONS = 0.6745
 
 PositionFigure = Callable[[RunData, SolvedPosition], float]
 """A figure of one position, see `position_figures`."""
-Samples = tuple[Floats, Floats]
-"""Places (n,), ascending, and values (n,) of a sampled curve."""
 
 
 def spacing_errors(run: RunData, index: int) -> FigureErrors:
@@ -124,40 +118,6 @@ def missed_peaks(values: Floats) -> float:
         return 0.0
     x, y = np.arange(len(values) + 5.0), np.concatenate([values[-2:], values, values[:3]])
     return float(sum(max(0.0, tops((x, each), jumps=False)[1:-1].max() - each.max()) for each in (y, -y)))
-
-
-def tops(curve: Samples, jumps: bool) -> Floats:
-    """Largest value (n − 3,) that a curve (n,) may have between two samples, for each interval but the first and last.
-
-    The curve is extrapolated linearly from both sides, by no more than the length of the step that gives the slope, see
-    above. NaN where a sample is unknown. jumps: whether the curve may jump between samples.
-    """
-    x, y = curve
-    if len(y) < 4:
-        return np.zeros(0)
-    step, slope = np.diff(x), np.diff(y) / np.diff(x)
-    left, right = y[1:-2], y[2:-1]  # samples at both ends of each interval
-    onward = left + slope[:-2] * np.minimum(step[1:-1], step[:-2])
-    back = right - slope[2:] * np.minimum(step[1:-1], step[2:])
-    below, above = back - left, onward - right  # the line from the left relative to that from the right, at both ends
-    ends = np.maximum(left, right)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        meet = left + (onward - left) * below / (below + above)
-    top = np.where((below > 0.0) & (above > 0.0), ends + (1.0 - SMOOTH * roundness(slope)) * (meet - ends), ends)
-    if jumps:
-        top = np.where(below * above < 0.0, 0.5 * (ends + np.fmax(ends, np.fmax(onward, back))), top)
-    return top
-
-
-def roundness(slope: Floats) -> Floats:
-    """Degree (n − 3,), from 0 for a kink to 1 for a smooth bend, to which a curve bends evenly around each interval.
-
-    It is twice the smaller bend at the samples before and after the interval, over the sum of the bends at its ends; 0
-    where these are zero. slope: (n − 1,), slopes between all samples.
-    """
-    bend = np.concatenate([[0.0], np.maximum(-np.diff(slope), 0.0), [0.0]])  # (n,), 0 at the ends, where it is unknown
-    within, beside = bend[1:-2] + bend[2:-1], 2.0 * np.fmin(bend[:-3], bend[3:])
-    return np.where(within > 0.0, np.minimum(1.0, beside / np.where(within > 0.0, within, 1.0)), 0.0)
 
 
 def bends(values: Floats) -> Floats:

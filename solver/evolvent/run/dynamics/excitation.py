@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, loaded_mesh, mesh_of
+from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, certify_torques, mesh_of, solved_figures
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.of_scene import check_positions
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
@@ -21,17 +23,20 @@ from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import GearModel, Mesher, Preparer, prepare_model
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
+from evolvent.gears.solution.certified_pitch import balanced
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
-from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPositions, kept_positions
+from evolvent.run.companion import attempted
+from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KEPT_DEFLECTED, KeptPositions, kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.dynamics.written_files import EXCITATION_PICTURE, OF_DYNAMICS, OF_EXCITATION
 from evolvent.run.folder_checks import require_unfinished, writing_to
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.errors import EvolventError
+
+ON_DEFLECTED = "The pitch was solved on deflected flanks: before deflection its energy does not balance."
 
 
 def run_excitation(
@@ -46,8 +51,8 @@ def run_excitation(
     overwrite: begin anew, and replace what an earlier call has written.
     prepare: prepares gears that other calls share.
 
-    Raises SceneError, FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface,
-    WriteError.
+    Raises SceneError, FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError,
+    NoForceSurface, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     check_positions(loads.scene)
@@ -68,7 +73,7 @@ def writing_results(
     Raises FolderError where files of others would be lost, or results unasked.
     """
     dolfinx_compat.silence_logs()
-    every = *written, KEPT, KEPT_COARSE
+    every = *written, KEPT, KEPT_COARSE, *KEPT_DEFLECTED
     return writing_to(
         out, comm, lambda: require_unfinished(out, every, (KEPT, EXCITATION), "positions", resume, overwrite)
     )
@@ -90,42 +95,56 @@ def companion_of(
     kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
 ) -> CoarseExcitation:
     """The same positions and torques on elements of twice the size, where the scene asks for error bars; an error of
-    meshing or solving becomes its `failure`: results are not lost for their error bars. Collective."""
+    meshing or solving becomes its `failure`, see `attempted`. Collective."""
     if not wanted_output(loads.scene).error_bars:
         return NO_COMPANION
-    angles = excitation.loaded.angles
-    try:
+
+    def solved() -> MeshExcitation:
+        angles = excitation.loaded.angles
         loaded = loaded_pitch(loads, angles, companion_mesh, comm, progress, ERROR_BARS, kept, prepare)
-        coarse = MeshExcitation(excitation.unloaded_error, loaded)
-        return CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements)
-    except EvolventError as error:  # the same on all ranks
-        return CoarseExcitation(None, failure=f"Error bars: their coarse companion could not be solved: {error}")
+        return MeshExcitation(excitation.unloaded_error, loaded)
+
+    found = attempted(solved)
+    return CoarseExcitation(found.value, loads.scene.mesh.order, loads.elements, found.reason)
 
 
 def loaded_pitch(
     loads: SceneTorques, angles: Floats, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
     kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
 ) -> LoadedMesh:
-    """The pitch under each torque, on the sectors that `mesh` makes. Collective.
+    """The certified pitch under each torque, on the sectors that `mesh` makes; on deflected flanks where its energy
+    does not balance otherwise. Collective.
 
     stage: name of the solution in the progress.
     kept: positions on disk; where all of them are there, no gears are meshed.
     prepare: see `run_excitation`.
     """
-    known = on_first(comm, kept.read) if kept is not None else {}
 
-    def keep(found: Figures) -> None:
-        progress.reach(len(found))
-        if kept is not None:
-            on_first(comm, lambda: kept.write(found))
+    @cache
+    def gears() -> GearModel:
+        progress.stage(MESHING)
+        model: GearModel = prepare(loads.problem, comm, mesh, lambda: progress.stage(CONDENSING)).model
+        return model
 
-    if len(known) == len(angles):
-        progress.stage(stage, len(angles), len(known))
-        return mesh_of(known, loads.forces, angles)
-    progress.stage(MESHING)
-    model: GearModel = prepare(loads.problem, comm, mesh, lambda: progress.stage(CONDENSING)).model
-    progress.stage(stage, len(angles), len(known))
-    return loaded_mesh(model, loads.torques, angles, comm, known, keep)
+    def solved(deflected: bool) -> LoadedMesh:
+        store = kept.deflected if kept is not None and deflected else kept
+        found: Figures = on_first(comm, store.read) if store is not None else {}
+
+        def keep(solved: Figures) -> None:
+            progress.reach(len(solved))
+            if store is not None:
+                on_first(comm, lambda: store.write(solved))
+
+        if len(found) < len(angles):
+            model = replace(gears(), deflected=deflected)
+            progress.stage(stage, len(angles), len(found))
+            found = solved_figures(model, loads.torques, angles, comm, found, keep)
+        else:
+            progress.stage(stage, len(angles), len(found))
+        certify_torques(found, loads.torques)
+        return mesh_of(found, loads.forces, angles, deflected)
+
+    return balanced(solved, loads.problem.options.deflected_flanks)
 
 
 def _written(
@@ -153,4 +172,5 @@ def write_excitation(
         return excitation_picture(excitation, facts, companion)
 
     failures = draw([Picture(EXCITATION_PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures
-    return [*failures, *([companion.failure] if companion.failure else [])]
+    mended = excitation.loaded.deflected and not loads.problem.options.deflected_flanks
+    return [*failures, *filter(None, [ON_DEFLECTED if mended else "", companion.failure])]

@@ -3,17 +3,19 @@ need no contact to be solved.
 
     OUT/results/excitation.npz          on the meshes of the scene
     OUT/results/excitation_coarse.npz   on those of the companion that gives the error bars
+    OUT/results/excitation*_deflected.npz   the same on deflected flanks, where a pitch does not balance otherwise
 """
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from evolvent.dynamics.excitation.loaded_mesh import COLUMNS
 from evolvent.results.archive.archive import fingerprint
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Arrays, Store
@@ -21,6 +23,9 @@ from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent_meshes.arrays import Floats
 
 KEPT, KEPT_COARSE = "results/excitation.npz", "results/excitation_coarse.npz"
+DEFLECTED = ".npz", "_deflected.npz"
+"""End of these names, and what it is on deflected flanks."""
+KEPT_DEFLECTED = KEPT.replace(*DEFLECTED), KEPT_COARSE.replace(*DEFLECTED)
 
 
 @dataclass(frozen=True)
@@ -34,16 +39,20 @@ class KeptPositions:
     resume: bool
     """Whether the call goes on from those of an earlier one."""
 
+    @property
+    def deflected(self) -> KeptPositions:
+        """The same gears, torques and positions on deflected flanks."""
+        return replace(self, name=self.name.replace(*DEFLECTED))
+
     def read(self) -> dict[int, Floats]:
-        """Number of a position -> (m, 2) transmission error [mm] and tangent stiffness [N/mm] under each torque; none
-        where the call begins anew, or there is no file. Raises ArchiveError where it is that of other gears, torques or
-        positions."""
+        """Number of a position -> (m, 4) figures under each torque (`figures_of`); none where the call begins anew, or
+        there is no file. Raises ArchiveError where it is that of other gears, torques or positions."""
         return (self.store.read(self.name, self._figures) or {}) if self.resume else {}
 
     def _figures(self, arrays: Arrays) -> dict[int, Floats]:
         """Raises ArchiveError where the arrays are not those of positions."""
         numbers, figures = arrays.get("numbers", np.zeros(0)), arrays.get("figures", np.zeros(0))
-        fits = figures.shape == (*numbers.shape, *figures.shape[1:2], 2)
+        fits = figures.shape == (*numbers.shape, *figures.shape[1:2], COLUMNS)
         if numbers.dtype.kind != "i" or figures.dtype.kind != "f" or not fits:
             raise ArchiveError(
                 f"{self.store.folder.out / self.name}: wanted numbers of positions with their figures, found other "

@@ -8,7 +8,7 @@ from dataclasses import replace
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
-from evolvent.dynamics.results.curves import SECANT, TANGENT, VARYING_FACTOR, CoarseExcitation
+from evolvent.dynamics.results.curves import SECANT, TANGENT, CoarseExcitation
 from evolvent.dynamics.results.response import jumps, responses
 from evolvent.dynamics.results.response_errors import (
     FEWEST_POSITIONS,
@@ -21,6 +21,7 @@ from evolvent.dynamics.results.response_errors import (
     vibration_errors,
 )
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.results.error_bars.compared import SHARING
 from evolvent.run.dynamics.speeds import sweep_at
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import EvolventError
@@ -72,7 +73,7 @@ def _excitations(
     """Those that are wanted, with what will be said of the vibration on them."""
     if companion.excitation is None:
         return
-    yield OtherVibration(COARSE, FINER, VARYING_FACTOR[companion.order], None), companion.excitation
+    yield OtherVibration(COARSE, FINER, SHARING[companion.order], None), companion.excitation
     for first, half in zip(("first", "second"), halves(excitation)):
         yield OtherVibration(THINNED.format(first), CLOSER, SPACING_FACTOR, None), half
 

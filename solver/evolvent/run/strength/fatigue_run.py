@@ -13,9 +13,7 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.pressure.contact_cells import coarse_contact
-from evolvent.gears.solution.certificates import PitchImbalance, certify, certify_pitch
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
-from evolvent.gears.sweep.pitch_sweep import initial_state
+from evolvent.gears.solution.certified_pitch import certified_pitch
 from evolvent.results.archive.error_bar_data import EstimatedErrors
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
@@ -61,7 +59,7 @@ def run_fatigue(
     dolfinx_compat.silence_logs()
     checked = writing_to(out, comm, lambda: require_new(out, WRITTEN, FATIGUE, overwrite))
     with checked, Progress(hidden=hidden) as progress:
-        solved, run = _certified(scene, comm, progress, prepare)
+        solved, run = _solved(scene, comm, progress, prepare)
         companion = None
         if wanted_output(scene).error_bars:
             progress.stage(ERROR_BARS)
@@ -77,31 +75,16 @@ def run_fatigue(
         return on_first(comm, written)
 
 
-def _certified(
+def _solved(
     scene: Scene, comm: MPI.Comm, progress: Progress, prepare: Preparer
 ) -> tuple[Scene, RunData | None]:
-    """The pitch, on rank 0, and the scene that it belongs to: on deflected flanks where its energy does not balance
-    otherwise. Collective. Raises BalanceError."""
-    try:
-        return scene, _solved(scene, comm, progress, prepare)
-    except PitchImbalance:
-        deflected = with_deflected_flanks(scene)
-        if deflected is scene:
-            raise
-        return deflected, _solved(deflected, comm, progress, prepare)
-
-
-def _solved(scene: Scene, comm: MPI.Comm, progress: Progress, prepare: Preparer) -> RunData | None:
+    """The scene that asks for the flanks that its pitch needs, and the pitch, on rank 0. Collective."""
     progress.stage(MESHING)
     model = prepare(gear_problem(scene), comm, meshed=lambda: progress.stage(CONDENSING)).model
-    pitch, frictions, swept = pitch_of(scene), scene.contact.friction, []
+    pitch = pitch_of(scene)
     progress.stage(POSITIONS, len(pitch.angles))
-    for position in sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm):
-        certify(position.results)
-        swept.append(position)
-        progress.advance(more=not position.closes)
-    certify_pitch(position.results for position in one_pitch(swept))
-    return as_run(scene, model, swept, comm)
+    solved = certified_pitch(model, pitch, scene.contact.friction, comm, progress.position)
+    return with_deflected_flanks(scene) if solved.deflected else scene, as_run(scene, model, solved, comm)
 
 
 def _positions(run: RunData, index: int) -> list[LoadedPosition]:

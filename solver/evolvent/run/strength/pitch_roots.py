@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import GearModel, Mesher, Preparer, prepare_model
+from evolvent.gears.gear_model import Mesher, Preparer, prepare_model
 from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.solution.certificates import certify
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
-from evolvent.gears.sweep.pitch_sweep import initial_state
+from evolvent.gears.solution.certified_pitch import certified_pitch
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
@@ -33,10 +32,13 @@ class PitchRoots:
     angles: tuple[float, ...]
     """Pinion rotations beyond the uniform ones [rad]."""
     roots: Roots
+    """Of both gears at each friction coefficient."""
+    deflected: bool
+    """Whether contact was searched again on deflected flanks."""
 
 
 def scene_root_meshes(scene: Scene) -> tuple[RootMesh, RootMesh]:
-    """Those of results and of error bars."""
+    """The root mesh of the results, and the coarse one of the error bars."""
     times = (scene.strength or StrengthSection()).root_refinement
     return RootMesh(times), RootMesh(times, coarse=True)
 
@@ -50,20 +52,16 @@ def pitch_roots(
     mesh: of `root_meshes`. stage: of the progress, for the positions. angles: beyond the uniform ones; None: see
     `PitchRoots`. prepare: prepares gears that other calls share.
 
-    Raises MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance.
+    Raises MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError.
     """
     progress.stage(MESHING)
     problem = gear_problem(scene)
     one_sector = replace(problem, options=replace(problem.options, whole_gears=False))  # it has the roots
-    model: GearModel = prepare(one_sector, comm, mesh, lambda: progress.stage(CONDENSING)).model
+    gears = prepare(one_sector, comm, mesh, lambda: progress.stage(CONDENSING)).model
     pitch, frictions = pitch_of(scene), scene.contact.friction
     progress.stage(stage, len(pitch.angles))
-    swept = []
-    for position in sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm):
-        certify(position.results)
-        swept.append(position)
-        progress.advance(more=not position.closes)
-    uniform = one_pitch(swept)
+    solved = certified_pitch(gears, pitch, frictions, comm, progress.position)
+    uniform, model = solved.positions, replace(gears, deflected=solved.deflected)
     every = SweptRoots(uniform, on_first(comm, lambda: roots_of(model, uniform)))
     every = with_angles(model, every, _outer_points(problem) if angles is None else angles, frictions, comm)
     if angles is None:  # after the outer points, which narrow the intervals, too
@@ -72,7 +70,7 @@ def pitch_roots(
     further = sorted((each for each in every.positions if each.angle not in known), key=lambda each: each.angle)
     for position in further:
         certify(position.results)
-    return PitchRoots(tuple(each.angle for each in further), every.roots)
+    return PitchRoots(tuple(each.angle for each in further), every.roots, solved.deflected)
 
 
 def _outer_points(problem: GearProblem) -> list[float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from mpi4py import MPI
@@ -13,14 +14,15 @@ from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.run.companion import Attempt, attempted
 from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.progress import ERROR_BARS, OUTPUT, Progress
-from evolvent.run.strength.pitch_roots import pitch_roots, scene_root_meshes
+from evolvent.run.strength.pitch_roots import PitchRoots, pitch_roots, scene_root_meshes
 from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
-from evolvent.scene.skips import wanted_output
+from evolvent.scene.skips import wanted_output, with_deflected_flanks
 from evolvent.strength.peak_positions import Roots
 from evolvent.strength.results.gauge_table import GAUGES, gauge_rows, write_gauges
 from evolvent.strength.results.tables import (
@@ -37,7 +39,6 @@ from evolvent.strength.results.tables import (
 from evolvent.strength.root_surface import compression_side, tension_side
 from evolvent.strength.standard.root_stress import RootLoad
 from evolvent.strength.strain_gauges import Gauge, gauge_places
-from evolvent_meshes.errors import EvolventError
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
@@ -60,7 +61,7 @@ def run_strength(
     calls share.
 
     Raises InputError where the standard does not cover the gears or a strain gauge does not lie on a root, before
-    anything is computed; FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance, WriteError.
+    anything is computed; FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
@@ -71,16 +72,15 @@ def run_strength(
     with checked, Progress(hidden=hidden) as progress:
         fine_mesh, coarse_mesh = scene_root_meshes(scene)
         fine = pitch_roots(scene, fine_mesh, comm, progress, prepare=prepare)
-        coarse, failure = None, ""
+        scene = with_deflected_flanks(scene) if fine.deflected else scene
+        coarse = Attempt[PitchRoots]()
         if wanted_output(scene).error_bars:
-            try:
-                coarse = pitch_roots(scene, coarse_mesh, comm, progress, ERROR_BARS, fine.angles, prepare)
-            except EvolventError as error:  # the same on all ranks
-                failure = f"Error bars: their coarse companion could not be solved: {error}"
+            again = partial(pitch_roots, scene, coarse_mesh, comm, progress, ERROR_BARS, fine.angles, prepare)
+            coarse = attempted(again)
         progress.stage(OUTPUT)
-        found = _by_friction(scene, fine.roots, None if coarse is None else coarse.roots)
+        found = _by_friction(scene, fine.roots, None if coarse.value is None else coarse.value.roots)
         said = on_first(comm, lambda: _written(scene, loads, found, out))
-    return [*said, *chart_warnings(scene), *formula_warnings(loads), *([failure] if failure else [])]
+    return [*said, *chart_warnings(scene), *formula_warnings(loads), *filter(None, [coarse.reason])]
 
 
 def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:

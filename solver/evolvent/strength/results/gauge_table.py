@@ -10,7 +10,7 @@ import numpy as np
 
 from evolvent.fem.material import Material
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.error_bars.estimation import Curve
+from evolvent.results.error_bars.compared import Curve
 from evolvent.results.tables.tables import csv_text
 from evolvent.strength.results.root_curves import value_errors
 from evolvent.strength.results.tables import FrictionRoots

@@ -1,6 +1,6 @@
 """Root stress over the rotation of a tooth, and the error bars of its curves and of their largest values.
 
-The errors of the mesh are estimated as those of a run (`results.error_bars.estimation`), from the same positions on
+The errors of the mesh are estimated as those of a run (`results.error_bars.compared`), from the same positions on
 elements of twice the size, with a factor for root stress. A largest value may lie between two positions: by how much it
 may be higher there is added to its bar.
 """
@@ -12,14 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evolvent.results.error_bars.estimation import Curve, difference, relative_difference
-from evolvent.strength.peak_bounds import beside_largest
+from evolvent.results.error_bars.compared import ROOT_STRESS, Compared, Curve
+from evolvent.results.error_bars.peak_bounds import beside_largest
 from evolvent.strength.root_passage import GearRoots
 from evolvent_meshes.arrays import Floats
-
-ROOT_FACTOR = {1: 2.0, 2: 1.0 / 3.0}
-"""Order of the cells -> 1/(2^p − 1) for stress at roots of twelve elements around a fillet and more; p = 0.6 and 2. How
-many bars hold: docs/strength.md."""
 
 
 def tension_curve(roots: GearRoots) -> Curve:
@@ -49,9 +45,9 @@ def curve_errors(
     fine = curve(own)
     if coarse is None:
         return CurveErrors(np.full(len(fine.values), np.nan), np.nan)
-    rough, factor = curve(coarse), ROOT_FACTOR[order]
+    rough = curve(coarse)
     amount, less = (replace(each, values=np.abs(each.values)) for each in (fine, rough))
-    peak = factor * difference(np.max, amount, less) + _spacing_error(amount)
+    peak = Compared(amount, less, ROOT_STRESS[order]).of_figure(np.max) + _spacing_error(amount)
     return CurveErrors(value_errors(fine, rough, order), peak)
 
 
@@ -60,9 +56,8 @@ def value_errors(fine: Curve, rough: Curve, order: int) -> Floats:
 
     rough: on elements of twice the size, at the same rotations. order: of the cells.
     """
-    # curves cross, and errors do not scale with values
-    least = np.abs(fine.values).max() * relative_difference(fine, rough)
-    return np.asarray(ROOT_FACTOR[order] * np.maximum(np.abs(fine.values - rough.values), least))
+    largest = np.full(len(fine.values), np.abs(fine.values).max())  # curves cross, and errors do not scale with values
+    return Compared(fine, rough, ROOT_STRESS[order]).of_each(largest)
 
 
 def _spacing_error(curve: Curve) -> float:

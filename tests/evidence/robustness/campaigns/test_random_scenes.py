@@ -17,6 +17,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.solution import certified_pitch
 from evolvent.gears.sweep.periodic_pitch import sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.scene.gear_problem import gear_problem
@@ -88,7 +89,7 @@ def test_outcomes_tell_refusals_from_crashes(monkeypatch: pytest.MonkeyPatch) ->
             results = tuple(replace(r, torques=(r.torques[0], 1.02 * r.torques[1])) for r in position.results)
             yield replace(position, results=results)
 
-    monkeypatch.setattr(scene_outcomes, "sweep_until_periodic", with_result(sweep_until_periodic, wrong))
+    monkeypatch.setattr(certified_pitch, "sweep_until_periodic", with_result(sweep_until_periodic, wrong))
     assert outcome_of(scene, 41).verdict is Verdict.UNBALANCED
 
 

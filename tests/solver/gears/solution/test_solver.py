@@ -27,7 +27,7 @@ from evolvent.gears import (
 )
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.gears.solution import solver
+from evolvent.gears.solution import certified_pitch, solver
 from evolvent.gears.solution.certificates import PitchImbalance, certify_pitch
 from evolvent.results.archive.archive import Archive
 from evolvent.results.mesh_facts import cells_across
@@ -192,7 +192,7 @@ def test_pitch_out_of_balance_is_solved_on_deflected_flanks(gears: GearModel, mo
         certify_pitch(positions)
 
     expected = solve_pitch(replace(gears, deflected=True), 0.0, 2, MPI.COMM_SELF)
-    monkeypatch.setattr(solver, "certify_pitch", refuse_the_first)
+    monkeypatch.setattr(certified_pitch, "certify_pitch", refuse_the_first)
     found = solve_pitch(gears, 0.0, 2, MPI.COMM_SELF)
     assert found.deflected and len(calls) == 2
     np.testing.assert_array_equal(found.transmission_error, expected.transmission_error)

@@ -28,7 +28,8 @@ from evolvent.results.archive.error_bar_data import (
     write_error_bars,
 )
 from evolvent.results.engagement import engagement
-from evolvent.results.error_bars.estimation import Companion, Curve, difference, errors_between, estimated_errors
+from evolvent.results.error_bars.compared import Compared, Curve
+from evolvent.results.error_bars.estimation import Companion, errors_between, estimated_errors
 from evolvent.results.run_data import RunData, SolvedPosition, read_run
 from evolvent.run import coarse_run
 from evolvent.run.coarse_run import solved_run
@@ -120,12 +121,12 @@ def test_difference_of_curves_is_the_larger_of_figure_and_rms() -> None:
     rotations of one alone do not count."""
     at = np.arange(64) * 2 * np.pi / 64
     first = Curve(at, 3.0 + np.sin(at))
-    assert difference(np.ptp, first, Curve(at, first.values + 0.3)) == pytest.approx(2.0 * 0.3 / np.sqrt(9.5))
-    assert difference(np.mean, first, Curve(at, 2.0 * first.values)) == pytest.approx(3.0)
+    assert Compared(first, Curve(at, first.values + 0.3)).of_figure(np.ptp) == pytest.approx(2.0 * 0.3 / np.sqrt(9.5))
+    assert Compared(first, Curve(at, 2.0 * first.values)).of_figure(np.mean) == pytest.approx(3.0)
     holes = np.where(at < 1.0, np.nan, first.values)
-    assert difference(np.nanmax, first, Curve(at, holes)) == 0.0
-    assert difference(np.nanmax, first, Curve(np.append(at, 9.0), np.append(first.values, 3.5))) == 0.0
-    assert difference(np.mean, Curve(at, 0.0 * at), Curve(at, 0.0 * at)) == 0.0
+    assert Compared(first, Curve(at, holes)).of_figure(np.nanmax) == 0.0
+    assert Compared(first, Curve(np.append(at, 9.0), np.append(first.values, 3.5))).of_figure(np.nanmax) == 0.0
+    assert Compared(Curve(at, 0.0 * at), Curve(at, 0.0 * at)).of_figure(np.mean) == 0.0
 
 
 def test_hertz_pressures_have_no_error() -> None:

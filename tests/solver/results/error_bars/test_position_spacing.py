@@ -15,16 +15,15 @@ from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.archive.error_bar_data import summed_errors
 from evolvent.results.drawing.style import styled
 from evolvent.results.error_bars.estimation import Companion, errors_between, estimated_errors
+from evolvent.results.error_bars.peak_bounds import roundness, tops
 from evolvent.results.error_bars.position_spacing import (
     bends,
     every_other,
     missed_peaks,
-    roundness,
     scatter,
     shares,
     spacing_errors,
     thinned_mean,
-    tops,
 )
 from evolvent.results.figures.flank import pressure_map
 from evolvent.results.figures.stress import engagement_stress

@@ -31,14 +31,14 @@ def kept(out: Path) -> KeptPositions:
     return KeptPositions(Store(RunFolder(out), "gears", another), KEPT, True)
 
 
-WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 2)))
+WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 4)))
 
 
 def test_what_was_written_is_read(tmp_path: Path) -> None:
     """Two positions under one torque."""
     RunFolder(tmp_path).write(KEPT, WHOLE)
     found = kept(tmp_path).read()
-    assert list(found) == [0, 1] and np.array_equal(found[1], np.ones((1, 2)))
+    assert list(found) == [0, 1] and np.array_equal(found[1], np.ones((1, 4)))
 
 
 @pytest.mark.parametrize(
@@ -46,10 +46,11 @@ def test_what_was_written_is_read(tmp_path: Path) -> None:
     [
         b"", b"\0" * 100, b"PK\x03\x04" + b"\0" * 60, WHOLE[:-30], WHOLE[:60] + b"\xff" * 40 + WHOLE[100:],
         single_array(), archive(), archive(numbers=np.arange(2)),
-        archive(numbers=np.arange(3), figures=np.ones((2, 1, 2))),
+        archive(numbers=np.arange(3), figures=np.ones((2, 1, 4))),
         archive(numbers=np.arange(2), figures=np.ones((2, 2))),
-        archive(numbers=np.array(["a"]), figures=np.ones((1, 1, 2))),
-        archive(numbers=np.arange(1), figures=np.array([[["a", "b"]]])),
+        archive(numbers=np.array(["a"]), figures=np.ones((1, 1, 4))),
+        archive(numbers=np.arange(1), figures=np.array([[list("abcd")]])),
+        archive(numbers=np.arange(2), figures=np.ones((2, 1, 2))),
     ],
 )
 def test_forged_positions_are_refused(tmp_path: Path, content: bytes) -> None:

@@ -7,15 +7,14 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from evolvent.dynamics.results.curves import VARYING_FACTOR
 from evolvent.dynamics.results.transient.cases import UM, CasePressures
-from evolvent.dynamics.results.transient.compared import Compared, each_apart
+from evolvent.dynamics.results.transient.compared import ComparedMotion
 from evolvent.dynamics.results.transient.curves import MotionCurves
 from evolvent.dynamics.results.transient.errors import MovingCompanion
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.gears.gear_model import GearModel
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.error_bars.estimation import LOAD_FACTOR, STIFFNESS_FACTOR, Curve
+from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve
 from evolvent.results.tables.tables import csv_text
 from evolvent_meshes.arrays import Floats
 
@@ -130,11 +129,11 @@ def start_errors(own: Beginning, order: int, motions: tuple[Beginning, Beginning
         nothing = np.full(len(own.angle), np.nan)
         return StartErrors(nothing, nothing, nothing, float("nan"))
     every = (own, *motions)
-    error = Compared(STIFFNESS_FACTOR[order], *(each.transmission_error for each in every))
-    force = Compared(VARYING_FACTOR[order], *(each.mesh_force for each in every))
-    largest = Compared(VARYING_FACTOR[order], *(each.largest_force for each in every))
-    peaks = Compared(LOAD_FACTOR[order], *(each.line_loads for each in every))
-    pressure = each_apart(own.pressure, own.hertz) + peaks.of_each()
+    error = ComparedMotion(STIFFNESS[order], *(each.transmission_error for each in every))
+    force = ComparedMotion(SHARING[order], *(each.mesh_force for each in every))
+    largest = ComparedMotion(SHARING[order], *(each.largest_force for each in every))
+    peaks = ComparedMotion(SHARING[order], *(each.line_loads for each in every))
+    pressure = Compared(own.pressure, own.hertz).of_each() + peaks.of_each()
     return StartErrors(UM * error.of_each(), force.of_each(), pressure, largest.of_figure(np.max))
 
 

@@ -13,7 +13,7 @@ from evolvent.gears.pressure.contact_slices import Slices, slices
 from evolvent.gears.pressure.line_peaks import line_peak
 from evolvent.gears.pressure.pitch_pressure import PitchPressure, facets_of
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.error_bars.estimation import Curve
+from evolvent.results.error_bars.compared import Curve
 from evolvent_meshes.arrays import Floats
 
 

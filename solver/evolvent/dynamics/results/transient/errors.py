@@ -1,7 +1,7 @@
 """Error bars of a pair's transient contact: from the same case on a companion of elements of twice the size.
 
 The companion moves twice, in the time steps of the case and in steps of a quarter. It has more natural modes. So the
-error of a figure has two parts, each a multiple of a difference D (`results.error_bars.estimation`) between curves:
+error of a figure has two parts, each a multiple of a difference D (`results.error_bars.compared`) between curves:
 
 - Mesh and modes: between the case and the companion in the same steps. The factors are those of a run and of an
   excitation: what varies over the pitch excites. The modes that the case leaves out are in the same difference.
@@ -26,15 +26,16 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from evolvent.dynamics.results.curves import LOADED, TANGENT, VARYING_FACTOR, PitchCurve
+from evolvent.dynamics.results.curves import LOADED, TANGENT, PitchCurve
 from evolvent.dynamics.results.transient.cases import UM, CasePressures
-from evolvent.dynamics.results.transient.compared import Compared, at, by_rotation, each_apart, keys
+from evolvent.dynamics.results.transient.compared import ComparedMotion
 from evolvent.dynamics.results.transient.curves import MotionCurves, largest, mesh_force
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.error_bars.estimation import LOAD_FACTOR, STIFFNESS_FACTOR, difference
-from evolvent.results.error_bars.position_spacing import every_other, tops
+from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, by_rotation, keys
+from evolvent.results.error_bars.peak_bounds import tops
+from evolvent.results.error_bars.position_spacing import every_other
 from evolvent_meshes.arrays import Floats
 
 SAME_STEPS, FINER_STEPS = "on elements of twice the size", "on elements of twice the size in a quarter of the time step"
@@ -67,7 +68,7 @@ class CaseErrors:
     pressure: Floats
     """(n,) [MPa]."""
     tooth_force: dict[float, float] = field(default_factory=dict)
-    """Rotation of a tooth pair, see `compared.by_rotation` -> [N; N/mm in 2D]."""
+    """Rotation of a tooth pair, see `by_rotation` -> [N; N/mm in 2D]."""
     tooth_pressure: dict[float, float] = field(default_factory=dict)
     """The same [MPa]."""
     peak_to_peak_um: float = float("nan")
@@ -120,31 +121,32 @@ def _errors(
 ) -> CaseErrors:
     """still: the companion's statics."""
     case, order, inner = pressures.case, companion.order, pressures.moving.inner_path
+    factor = SHARING[order]
     moving, static = (
         MotionCurves(own, results, each.cuts, inner)
         for results, each in ((case.results, pressures.moving), (case.static, pressures.still))
     )
     moved = [[moment.result for moment in each.moments] for each in motions]
     same, finer, calm = (MotionCurves.of(companion.model, results, inner) for results in (*moved, still))
-    error = Compared(STIFFNESS_FACTOR[order], *(each.transmission_error for each in (moving, same, finer)))
-    force = Compared(VARYING_FACTOR[order], *(mesh_force(each) for each in (case.found, *motions)))
+    error = ComparedMotion(STIFFNESS[order], *(each.transmission_error for each in (moving, same, finer)))
+    force = ComparedMotion(factor, *(mesh_force(each) for each in (case.found, *motions)))
     rotations = np.union1d(*(keys(each.tooth_force.angle) for each in (moving, static)))
-    teeth = Compared(LOAD_FACTOR[order], *(at(each.tooth_force, rotations, 0.0) for each in (moving, same, finer)))
+    teeth = ComparedMotion(factor, *(each.tooth_force.at(rotations, 0.0) for each in (moving, same, finer)))
     loads = [each.line_loads for each in (moving, same, finer)]
-    peaks = Compared(LOAD_FACTOR[order], *(each.positions for each in loads))
-    tooth_peaks = Compared(LOAD_FACTOR[order], *(each.teeth for each in loads))
+    peaks = ComparedMotion(factor, *(each.positions for each in loads))
+    tooth_peaks = ComparedMotion(factor, *(each.teeth for each in loads))
     fitted, hertz = moving.fitted, moving.hertz
     return CaseErrors(
         UM * error.of_each(),
         force.of_each(),
-        each_apart(fitted.positions, hertz.positions) + peaks.of_each(),
+        Compared(fitted.positions, hertz.positions).of_each() + peaks.of_each(),
         by_rotation(teeth.own, teeth.of_each()),
-        by_rotation(fitted.teeth, each_apart(fitted.teeth, hertz.teeth) + tooth_peaks.of_each()),
-        UM * replace(error, factor=VARYING_FACTOR[order]).of_varying(np.ptp),
+        by_rotation(fitted.teeth, Compared(fitted.teeth, hertz.teeth).of_each() + tooth_peaks.of_each()),
+        UM * replace(error, factor=factor).of_varying(np.ptp),
         _pitch_curve(LOADED, UM, static, calm, order).peak_to_peak_error,
         force.of_figure(np.max) / case.load,
-        difference(largest, fitted.positions, hertz.positions) + peaks.of_figure(largest) + _spacing_error(moving),
-        _static_pressure_error(static, calm, LOAD_FACTOR[order]),
+        _fitted_error(moving) + peaks.of_figure(largest) + _spacing_error(moving),
+        _static_pressure_error(static, calm, factor),
         _natural_frequency_error(static, calm, order),
     )
 
@@ -166,11 +168,13 @@ def _natural_frequency_error(static: MotionCurves, calm: MotionCurves, order: in
 
 def _static_pressure_error(static: MotionCurves, calm: MotionCurves, factor: float) -> float:
     """Of the largest one, by the mesh and by the spacing of positions."""
-    fitted, hertz, (own, coarse) = static.fitted, static.hertz, (each.line_loads for each in (static, calm))
-    mesh = difference(largest, fitted.positions, hertz.positions) + factor * difference(
-        largest, own.positions, coarse.positions
-    )
-    return mesh + _spacing_error(static)
+    loads = Compared(static.line_loads.positions, calm.line_loads.positions, factor)
+    return _fitted_error(static) + loads.of_figure(largest) + _spacing_error(static)
+
+
+def _fitted_error(curves: MotionCurves) -> float:
+    """Of the largest fitted pressure for the computed loads."""
+    return Compared(curves.fitted.positions, curves.hertz.positions).of_figure(largest)
 
 
 def _spacing_error(curves: MotionCurves) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -27,9 +27,8 @@ from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel, Mesher, Preparer
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.solution.certificates import certify, certify_pitch
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
-from evolvent.gears.sweep.pitch_sweep import initial_state, uniform_pitch
+from evolvent.gears.solution.certified_pitch import certified_pitch
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.run.dynamics.transient.kept_cases import KeptCases, Statics
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, POSITIONS, Progress
@@ -89,13 +88,14 @@ class PairCases:
         progress.stage(MESHING)
         model = prepare(problem, comm, on.mesh, lambda: progress.stage(CONDENSING)).model
         static = known or _statics(scene, model, kept, comm, progress)
+        model = replace(model, deflected=static.deflected)
         progress.stage(MODES, sum(len(harmonics(gear.z)) for gear in problem.pair.gears))
         sampled = max(section.speeds_rpm) / 60.0 * problem.pair.pinion.z * scene.sweep.positions  # Hz
         count, density = section.modes_per_harmonic, dynamics.density_kg_m3
         found = partial(resolved_modes, problem, model, density, sampled, count, on.least)
         modes = together(comm, lambda: found(lambda: progress.advance(more=True)))
         constant_speed = section.drive == "constant_speed"
-        pair = driven_pair(model, modes, settings, static[0], section.mode_damping_ratio, constant_speed)
+        pair = driven_pair(model, modes, settings, static.positions[0], section.mode_damping_ratio, constant_speed)
         return PairCases(scene, problem, pair, static, settings, comm, progress)
 
     @property
@@ -106,7 +106,7 @@ class PairCases:
 
     def loaded(self) -> list[MovingPair]:
         """The pair under its loads at each friction coefficient."""
-        return [loaded_as_static(self.pair, results) for results in self.static]
+        return [loaded_as_static(self.pair, results) for results in self.static.positions]
 
     def found(self, kept: KeptCases) -> dict[int, MeshPeriods]:
         """All cases, those that are not kept divided among the ranks; on rank 0 all of them, none elsewhere. Raises
@@ -187,7 +187,7 @@ class PairCases:
         speed, index = self.tasks[number]
         scheme = TimeScheme(transient_section(self.scene).spectral_radius)
         friction = self.scene.contact.friction[index]
-        pair = loaded_as_static(self.pair, self.static[index])
+        pair = loaded_as_static(self.pair, self.static.positions[index])
         return PairTransient(pair, friction, 2.0 * np.pi * speed / 60.0, scheme, contacts, self._division(contacts))
 
     def _division(self, contacts: KeptContacts) -> DividedSteps:
@@ -217,14 +217,7 @@ def _statics(scene: Scene, model: GearModel, kept: KeptCases, comm: MPI.Comm, pr
     """The positions without inertia, at each friction coefficient. Collective. Raises BalanceError."""
     pitch, frictions = uniform_pitch(model.pair.pinion.z, scene.sweep.positions), list(scene.contact.friction)
     progress.stage(POSITIONS, len(pitch.angles))
-    swept = []
-    for position in sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm):
-        swept.append(position)
-        progress.reach(min(len(swept), len(pitch.angles)))
-    positions = [position.results for position in one_pitch(swept)]
-    for results in positions:
-        certify(results)
-    certify_pitch(positions)
-    static = [tuple(column) for column in zip(*positions)]
+    solved = certified_pitch(model, pitch, frictions, comm, progress.position)
+    static = Statics(tuple(solved.by_friction), solved.deflected)
     on_first(comm, lambda: kept.write_static(static))
     return static

@@ -37,8 +37,16 @@ from evolvent_meshes.gears.pair import GearPair
 COARSE, FINER_STEPS = "_coarse", "_finer"
 """Kinds of cases: those of the companion, in the time steps of the scene and in shorter ones."""
 BEGINNING = "beginning/"
-Statics = list[tuple[PositionResult, ...]]
-"""Of each friction coefficient, its positions."""
+
+
+@dataclass(frozen=True)
+class Statics:
+    """A certified pitch without inertia."""
+
+    positions: tuple[tuple[PositionResult, ...], ...]
+    """Results of the pitch at each friction coefficient."""
+    deflected: bool
+    """Whether contact was searched again on deflected flanks."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +82,8 @@ class KeptCases:
 
     def write_static(self, static: Statics) -> None:
         """Keeps the positions without inertia. Raises WriteError, FolderError."""
-        arrays: Arrays = {"count": len(static)}
-        for i, results in enumerate(static):
+        arrays: Arrays = {"count": len(static.positions), "deflected": static.deflected}
+        for i, results in enumerate(static.positions):
             arrays |= _positions_arrays(results, f"{i}/")
         self.statics.write(self._name("static"), arrays)
 
@@ -96,7 +104,8 @@ class KeptCases:
         return f"results/transient{self.kind}_{what}.npz"
 
     def _static(self, arrays: Arrays) -> Statics:
-        return [tuple(self._positions(arrays, f"{i}/")) for i in range(int(arrays["count"]))]
+        positions = tuple(tuple(self._positions(arrays, f"{i}/")) for i in range(int(arrays["count"])))
+        return Statics(positions, bool(arrays["deflected"]))
 
     def _periods(self, arrays: Arrays) -> MeshPeriods:
         return MeshPeriods(

@@ -40,8 +40,14 @@ from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
-from evolvent.scene.skips import wanted_output
+from evolvent.scene.skips import wanted_output, with_deflected_flanks
 from evolvent.scene.vibration_limits import doubtful
+
+UNLIKE_STATICS = (
+    "The pitch without inertia does not balance along normals before deflection: it was solved on deflected flanks "
+    "(skip deflected-flanks). Motions are computed along normals before deflection; period_energy_error of "
+    "transient.json is what they lose."
+)
 
 
 def run_transient(
@@ -76,10 +82,11 @@ def run_transient(
     with checked as said, Progress(hidden=hidden) as progress:
         own = PairCases.of(scene, problem, settings, PairMeshes(), kept(), comm, progress, prepare)
         found = own.found(kept())
-        companion, missing = companion_of(scene, problem, settings, kept, comm, progress, prepare)
+        companion = companion_of(scene, problem, settings, kept, comm, progress, prepare)
         progress.stage(OUTPUT)
         said += [*chart_warnings(scene), *unused_keys(dynamics), *doubtful(scene.planned_vibration())]
-        return said + missing + on_first(comm, lambda: _written(own, found, companion, out))
+        said += filter(None, [companion.reason])
+        return said + on_first(comm, lambda: _written(own, found, companion.value, out))
 
 
 def _written(
@@ -87,9 +94,10 @@ def _written(
 ) -> list[str]:
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
     scene, pair, frictions = own.scene, own.pair, own.scene.contact.friction
+    solved = with_deflected_flanks(scene) if own.static.deflected else scene
     loads = [each.drive.torque / each.lever for each in own.loaded()]
     cases = [
-        TransientCase(speed, frictions[i], found[number], own.static[i], loads[i])
+        TransientCase(speed, frictions[i], found[number], own.static.positions[i], loads[i])
         for number, (speed, i) in enumerate(own.tasks)
     ]
     pressures = case_pressures(pair.model, cases)
@@ -97,7 +105,7 @@ def _written(
     rows, teeth = list(transient_rows(pair.model, pressures, errors)), list(tooth_rows(pair.model, pressures, errors))
     begun = beginnings(pair.model, pressures, companion)
     started = list(start_rows(pair.model, pressures, begun))
-    natural = [own_frequency(pair, static) for static in own.static]
+    natural = [own_frequency(pair, static) for static in own.static.positions]
     naturals = [natural[i] for _, i in own.tasks]
     facts = transient_facts(pair.model, pressures, errors, [bars for _, bars in begun], pair.frequencies, naturals)
 
@@ -119,7 +127,7 @@ def _written(
 
     folder = RunFolder(out)
     folder.remove(WRITTEN)
-    folder.write_text(SCENE, scene.resolved_toml())
+    folder.write_text(SCENE, solved.resolved_toml())
     write_rows(folder, rows, teeth)
     write_facts(folder, facts)
     if started:
@@ -132,4 +140,5 @@ def _written(
     said = sentences(facts, positions, section.tolerance, section.spectral_radius)
     coarse = coarse_contact(elements_across(pair.model, pressures))
     unknown = [f"{each.case.name}: {bars.said}" for each, bars in zip(pressures, errors) if bars.said]
-    return [*draw(pictures, folder).failures, *said, *coarse, *unknown]
+    mended = [] if solved is scene else [UNLIKE_STATICS]
+    return [*draw(pictures, folder).failures, *said, *coarse, *unknown, *mended]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.dynamics.results.transient.compared import FINER, STEP_FACTOR, Compared, at, each_apart
-from evolvent.results.error_bars.estimation import Curve
+from evolvent.dynamics.results.transient.compared import FINER, STEP_FACTOR, ComparedMotion
+from evolvent.results.error_bars.compared import Compared, Curve
 from evolvent_meshes.arrays import Floats
 
 ANGLE = 0.1 * np.arange(8)
@@ -28,7 +28,7 @@ def test_first_order_in_the_step_is_extrapolated() -> None:
     value of 1 times the largest of 3."""
     off = 0.03
     same, finer = Curve(ANGLE, smooth(ANGLE) + off), Curve(FINE, smooth(FINE) + off / FINER)
-    found = Compared(1.0, same, same, finer)
+    found = ComparedMotion(1.0, same, same, finer)
     apart = STEP_FACTOR * (off - off / FINER)
     assert apart == pytest.approx(off)
     assert found.of_figure(np.max) == pytest.approx(apart, rel=0.5) and found.of_figure(np.max) >= apart - 1e-12
@@ -40,7 +40,7 @@ def test_the_mesh_counts_with_its_factor() -> None:
     of all."""
     own = Curve(ANGLE, smooth(ANGLE))
     same, finer = Curve(ANGLE, 2.0 * smooth(ANGLE)), Curve(FINE, 2.0 * smooth(FINE))
-    found = Compared(0.5, own, same, finer)
+    found = ComparedMotion(0.5, own, same, finer)
     assert found.of_figure(np.max) == pytest.approx(0.5 * 3.0)
     assert found.of_each() == pytest.approx(0.5 * sizes(smooth(ANGLE)))
 
@@ -48,8 +48,8 @@ def test_the_mesh_counts_with_its_factor() -> None:
 def test_a_mean_has_no_part_in_what_varies() -> None:
     """Curves that differ by a constant have the same peak-to-peak value, and a bar of zero."""
     curves = Curve(ANGLE, smooth(ANGLE)), Curve(ANGLE, smooth(ANGLE) + 1.0), Curve(ANGLE, smooth(ANGLE) - 1.0)
-    assert Compared(1.0, *curves).of_varying(np.ptp) == pytest.approx(0.0, abs=1e-12)
-    assert Compared(1.0, *curves).of_figure(np.max) > 1.0
+    assert ComparedMotion(1.0, *curves).of_varying(np.ptp) == pytest.approx(0.0, abs=1e-12)
+    assert ComparedMotion(1.0, *curves).of_figure(np.max) > 1.0
 
 
 def test_a_value_that_the_other_lacks_has_the_bar_of_the_curve() -> None:
@@ -57,12 +57,12 @@ def test_a_value_that_the_other_lacks_has_the_bar_of_the_curve() -> None:
     where the two motions there have none."""
     other = Curve(ANGLE[1:], 1.1 * smooth(ANGLE[1:]))
     own = Curve(ANGLE, smooth(ANGLE))
-    assert each_apart(own, other) == pytest.approx(0.1 * sizes(smooth(ANGLE)))
-    assert np.isnan(at(other, ANGLE).values[0]) and np.isfinite(at(other, ANGLE).values[1:]).all()
-    assert np.isfinite(Compared(1.0, own, other, Curve(FINE, smooth(FINE))).of_each()).all()
+    assert Compared(own, other).of_each() == pytest.approx(0.1 * sizes(smooth(ANGLE)))
+    assert np.isnan(other.at(ANGLE).values[0]) and np.isfinite(other.at(ANGLE).values[1:]).all()
+    assert np.isfinite(ComparedMotion(1.0, own, other, Curve(FINE, smooth(FINE))).of_each()).all()
 
 
 def test_curves_without_a_common_rotation_have_no_bar() -> None:
     """Not known, and not zero."""
     own, apart = Curve(ANGLE, smooth(ANGLE)), Curve(ANGLE + 0.01, smooth(ANGLE))
-    assert np.isnan(each_apart(own, apart)).all()
+    assert np.isnan(Compared(own, apart).of_each()).all()

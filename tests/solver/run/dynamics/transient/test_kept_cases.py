@@ -107,7 +107,7 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
         "transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_coarse_static.npz",
         "transient_finer_2000rpm_0.npz", "transient_finer_2000rpm_1.npz", "transient_static.npz",
     ]
-    monkeypatch.setattr(module, "sweep_until_periodic", None)
+    monkeypatch.setattr(module, "certified_pitch", None)
     said = run_transient(scene(), tmp_path, resume=True, quiet=True)
     assert len(counts) == 2 + 4 + 2
     assert same_tables(tmp_path, out)
@@ -121,7 +121,7 @@ def test_overwriting_begins_anew(out: Path, tmp_path: Path, monkeypatch: pytest.
     earlier = KeptCases.of(scene(), scene().gear_pair(), tmp_path)
     earlier.write(1, KeptCases.of(scene(), earlier.pair, out).read()[1])
     assert kept(tmp_path) == ["transient_2000rpm_1.npz"]
-    monkeypatch.setattr(module, "sweep_until_periodic", stopped)
+    monkeypatch.setattr(module, "certified_pitch", stopped)
     with pytest.raises(Killed):
         run_transient(scene(), tmp_path, overwrite=True, quiet=True)
     assert kept(tmp_path) == []
@@ -172,7 +172,7 @@ def test_speeds_that_are_added_later(
         return solved(*given)
 
     monkeypatch.setattr(module, "until_steady", counted)
-    monkeypatch.setattr(module, "sweep_until_periodic", None)
+    monkeypatch.setattr(module, "certified_pitch", None)
     run_transient(of(more), grown, resume=True, quiet=True)
     assert len(counts) == 1 and str(*(set(more) - set(speeds))) in counts[0]
     assert same_tables(grown, whole)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.strength.peak_bounds import INNER, beside_largest
+from evolvent.results.error_bars.peak_bounds import INNER, beside_largest
 from evolvent_meshes.arrays import Floats
 
 

@@ -97,8 +97,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "results.error_bars": ("meshes", "results.archive", "results"),
     "results.tables": (
-        "meshes.gears", "gears.pressure", "gears.solution", "scene", "scene.checking", "results.archive", "results",
-        "results.error_bars",
+        "meshes", "meshes.gears", "gears.pressure", "gears.solution", "scene", "scene.checking", "results.archive",
+        "results", "results.error_bars",
     ),
     "results.fields": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears.two_level", "gears",
@@ -127,29 +127,30 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.tables",
     ),
     "dynamics.results.transient": (
-        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient", "results.archive",
-        "results.error_bars", "results.tables", "dynamics.results",
+        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient", "results.error_bars",
+        "results.tables", "dynamics.results",
     ),
     "dynamics.figures": (
-        "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.excitation", "dynamics.oscillator",
-        "dynamics.results.*", "results.drawing",
+        "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.oscillator", "dynamics.results.*",
+        "results.tables", "results.drawing",
     ),
     "strength.results": (
-        "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "strength.standard",
+        "meshes", "meshes.gears", "fem", "results.error_bars", "results.tables", "strength.standard",
         "strength.fatigue", "strength",
     ),
-    "strength.figures": ("meshes", "meshes.gears", "results.drawing", "strength.fatigue", "strength.results"),
+    "strength.figures": (
+        "meshes", "meshes.gears", "results.tables", "results.drawing", "strength.fatigue", "strength.results",
+    ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "dynamics", "dynamics.modes", "dynamics.results.*", "dynamics.figures", "scene",
-        "scene.schema", "results.*", "wear.*",
+        "scene.schema", "results.*", "strength.figures", "wear.*",
     ),
     "run.strength": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem",
         "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "scene.checking",
-        "results.archive", "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard",
-        "strength.fatigue",
-        "strength", "strength.results", "strength.figures", "run",
+        "results.archive", "results", "results.error_bars", "results.drawing", "strength.standard",
+        "strength.fatigue", "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
         "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",

@@ -87,13 +87,14 @@ def _over_flank(axes: Axes, points: Sequence[FatigueMapRow], scale: Normalize) -
 
 
 def _section(axes: Axes, rows: Sequence[FatigueDepthRow], half_width: float, scale: Normalize) -> None:
-    """Over depth and diameter. half_width: of the contact, median of the flank [mm]."""
+    """Over depth and diameter. rows: point by point; half_width: of the contact, median of the flank [mm]."""
     depths = np.linspace(0.0, 1e3 * half_width * SHOWN, DEPTHS)
-    diameters = list(dict.fromkeys(row.diameter_mm for row in rows))
-    values = []
-    for diameter in diameters:
-        own = [row for row in rows if row.diameter_mm == diameter]
-        values.append(np.interp(depths, [row.depth_um for row in own], [row.value for row in own]))
+    count = len({row.depth_over_half_width for row in rows})
+    points = [rows[k : k + count] for k in range(0, len(rows), count)]
+    values = [
+        np.interp(depths, [row.depth_um for row in point], [row.value for row in point]) for point in points
+    ]
+    diameters = [point[0].diameter_mm for point in points]
     axes.contourf(depths, diameters, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
     axes.set_xlabel("depth [µm]")
 

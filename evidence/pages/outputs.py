@@ -3,43 +3,41 @@ written. What a field means stands beside it, as the text below it in its class.
 
 from __future__ import annotations
 
-import ast
-import inspect
 import json
-import textwrap
 import types
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from itertools import pairwise
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from evidence.tables import markdown
-from evolvent.dynamics.operation_figures import OperationFigures, VibrationRow
-from evolvent.dynamics.results.design_load import ExcitationFacts
-from evolvent.dynamics.results.histories import HistoryRow
-from evolvent.dynamics.results.response import BranchRow, DriveSummary, ResponseRow
-from evolvent.dynamics.results.spectrum import SpectrumRow
-from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
-from evolvent.dynamics.results.torque_map import MapRow
-from evolvent.dynamics.results.transient.beginning import StartRow
-from evolvent.dynamics.results.transient.facts import TransientFacts
-from evolvent.dynamics.results.transient.rows import TransientRow, TransientToothRow
+from evolvent.dynamics.results.design_load import EXCITATION_FACTS
+from evolvent.dynamics.results.histories import HISTORIES
+from evolvent.dynamics.results.operation import OPERATION
+from evolvent.dynamics.results.response import BRANCH, DYNAMICS, RESPONSE
+from evolvent.dynamics.results.spectrum import SPECTRUM
+from evolvent.dynamics.results.tables import EXCITATION, HARMONICS
+from evolvent.dynamics.results.torque_map import TORQUE_MAP
+from evolvent.dynamics.results.transient.beginning import TRANSIENT_START
+from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
+from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.drawing.labels import UNITS, ending
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.shaft_forces import ShaftForces
-from evolvent.results.tables.load_table import ERROR, LoadRow
+from evolvent.results.tables.field_texts import field_texts
+from evolvent.results.tables.load_table import ERROR, LOADS
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
-from evolvent.run.study.results.check_figures import CheckFigures
-from evolvent.run.study.results.scene_record import SceneRecord
+from evolvent.results.tables.table import Record, Table
+from evolvent.run.study.results.check_figures import CHECK
+from evolvent.run.study.results.scene_record import RECORD
 from evolvent.scene.skips import Skipped
-from evolvent.strength.results.fatigue_facts import FatigueFacts
-from evolvent.strength.results.fatigue_rows import FatigueDepthRow, FatigueLifeRow, FatigueMapRow, FatigueRow
-from evolvent.strength.results.gauge_table import GaugeRow
-from evolvent.strength.results.tables import RootStressRow, StrengthRow
-from evolvent.wear.gears.gear_study import BlockRow
-from evolvent.wear.results.report import GearReport, PairReport, WearReport
+from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS
+from evolvent.strength.results.fatigue_rows import FATIGUE, FATIGUE_DEPTH, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_SECTION
+from evolvent.strength.results.gauge_table import GAUGES
+from evolvent.strength.results.tables import ROOT_STRESS, STRENGTH
+from evolvent.wear.results.archive import BLOCKS, VIBRATION
+from evolvent.wear.results.report import WEAR, GearReport, PairReport
 
 Schema = dict[str, Any]
 
@@ -98,6 +96,7 @@ FILES = (
     ("fatigue_life.csv", "likewise: lives at several friction coefficients over that at the first"),
     ("fatigue_map.csv", "likewise: each criterion over the flank"),
     ("fatigue_depth.csv", "likewise: each criterion below the point with the largest contact pressure"),
+    ("fatigue_section.csv", "likewise: Dang Van's criterion below all points at mid-face"),
     ("fatigue.json", "`evolvent fatigue`: what these figures rest on"),
     ("study.csv", "`evolvent study`: parameters and figures of each scene, [studies.md](studies.md)"),
     ("study.json", "`evolvent study`: what its table is of"),
@@ -133,7 +132,7 @@ FORCES = (
     "and the radial force is one or two per cent larger in the mean. These forces have no error bar: hold runs with "
     "more positions and finer meshes against each other."
 )
-SECTIONS = (
+SECTIONS: tuple[tuple[str, type, str] | tuple[Table[Any] | Record[Any], str], ...] = (
     ("`summary.json`", Summary, "Python's `json` or any other reader; a number that does not exist is `null`."),
     ("`mesh`", MeshFacts, ""),
     ("`skipped`, each entry", Skipped, ""),
@@ -144,37 +143,39 @@ SECTIONS = (
     ("`frictions`, `estimated_error` and `spacing_error` of an entry", FigureErrors, ""),
     ("`positions`, each entry; the columns of `positions.csv`", PositionRow, ""),
     ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),
-    ("`loads.csv`", LoadRow, "Of `evolvent loads`."),
-    ("`excitation.csv`", ExcitationRow, "Without friction; the lightest torque first."),
-    ("`excitation.json`", ExcitationFacts, ""),
-    ("`harmonics.csv`", HarmonicRow, "Fewer than half the positions, at most five."),
-    ("`response.csv`", ResponseRow, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
-    ("`branch.csv`", BranchRow, "Of `evolvent dynamics`: all steady states from the lowest speed to the highest."),
-    ("`spectrum.csv`", SpectrumRow, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
-    ("`histories.csv`", HistoryRow, "At the speeds of `dynamics.histories_rpm`, or at the operating one."),
-    ("`torque_map.csv`", MapRow, "Of `evolvent dynamics` with `dynamics.map_percents`; the lightest torque first."),
-    ("`dynamics.json`", DriveSummary, ""),
-    ("`operation.json`", OperationFigures, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
-    ("`transient.csv`", TransientRow, "Of `evolvent transient`, at ascending rotations."),
-    ("`transient_teeth.csv`", TransientToothRow, "Of `evolvent transient`, at ascending rotations of a tooth."),
-    ("`transient_start.csv`", StartRow, "Of `evolvent transient` with `transient.start = \"rest\"`, over time."),
-    ("`transient.json`, each entry", TransientFacts, "Of `evolvent transient`."),
-    ("`strength.csv`", StrengthRow, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
-    ("`root_stress.csv`", RootStressRow, "Of `evolvent strength`, at ascending rotations."),
-    ("`gauges.csv`", GaugeRow, "Of `evolvent strength` with `strength.gauges`, at ascending rotations."),
-    ("`fatigue.csv`", FatigueRow, "Of `evolvent fatigue`: the pinion first."),
-    ("`fatigue_life.csv`", FatigueLifeRow, "Of `evolvent fatigue` with more than one friction coefficient."),
-    ("`fatigue_map.csv`", FatigueMapRow, "Of `evolvent fatigue`, from the root of the pinion on."),
-    ("`fatigue_depth.csv`", FatigueDepthRow, "Of `evolvent fatigue`, from the surface down."),
-    ("`fatigue.json`, each entry", FatigueFacts, "Of `evolvent fatigue`."),
-    ("`study_scene.json`", SceneRecord, "Of each scene of `evolvent study`."),
-    ("`check.json`", CheckFigures, "Of each scene of `evolvent study` with `compute = \"check\"`."),
-    ("`wear.csv`", BlockRow, ""),
-    ("`vibration.csv`", VibrationRow, "Of wear, where `dynamics.operating_rpm` is given."),
-    ("`wear.json`", WearReport, ""),
+    (LOADS, "Of `evolvent loads`."),
+    (EXCITATION, "Without friction; the lightest torque first."),
+    (EXCITATION_FACTS, ""),
+    (HARMONICS, "Fewer than half the positions, at most five."),
+    (RESPONSE, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
+    (BRANCH, "Of `evolvent dynamics`: all steady states from the lowest speed to the highest."),
+    (SPECTRUM, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
+    (HISTORIES, "At the speeds of `dynamics.histories_rpm`, or at the operating one."),
+    (TORQUE_MAP, "Of `evolvent dynamics` with `dynamics.map_percents`; the lightest torque first."),
+    (DYNAMICS, ""),
+    (OPERATION, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
+    (TRANSIENT, "Of `evolvent transient`, at ascending rotations."),
+    (TRANSIENT_TEETH, "Of `evolvent transient`, at ascending rotations of a tooth."),
+    (TRANSIENT_START, "Of `evolvent transient` with `transient.start = \"rest\"`, over time."),
+    (TRANSIENT_FACTS, "Of `evolvent transient`."),
+    (STRENGTH, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
+    (ROOT_STRESS, "Of `evolvent strength`, at ascending rotations."),
+    (GAUGES, "Of `evolvent strength` with `strength.gauges`, at ascending rotations."),
+    (FATIGUE, "Of `evolvent fatigue`: the pinion first."),
+    (FATIGUE_LIFE, "Of `evolvent fatigue` with more than one friction coefficient."),
+    (FATIGUE_MAP, "Of `evolvent fatigue`, from the root of the pinion on."),
+    (FATIGUE_DEPTH, "Of `evolvent fatigue`, from the surface down."),
+    (FATIGUE_SECTION, "Of `evolvent fatigue`, from the root of the pinion on."),
+    (FATIGUE_FACTS, "Of `evolvent fatigue`."),
+    (RECORD, "Of each scene of `evolvent study`."),
+    (CHECK, "Of each scene of `evolvent study` with `compute = \"check\"`."),
+    (BLOCKS, ""),
+    (VIBRATION, "Of wear, where `dynamics.operating_rpm` is given."),
+    (WEAR, ""),
     ("`wear.json`, `reports`, each entry", PairReport, ""),
     ("`wear.json`, `pinion` and `wheel` of a report", GearReport, ""),
 )
+"""Title, dataclass and words of a part; or table and words."""
 INTRODUCTION = f"""
 What a run leaves in its folder, `--out`. Units stand in the names: `_um` is µm, `_Nm` is N·m. Numbers in CSV files have
 nine digits, and `nan` where there is none. A text that a spreadsheet would compute, as it begins with =, +, - or @,
@@ -186,22 +187,6 @@ without a new version; where a key goes or means something else the version is o
 """
 
 
-def described(kind: type) -> dict[str, str]:
-    """Field -> the text below it in the class. Raises ValueError for a field without one."""
-    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
-    assert isinstance(tree, ast.ClassDef)
-    texts = {}
-    for field, text in pairwise([*tree.body, ast.Pass()]):
-        if not isinstance(field, ast.AnnAssign):
-            continue
-        name = ast.unparse(field.target)
-        if not (isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant)):
-            raise ValueError(f"{kind.__name__}.{name}: wanted a text below it that says what it is, found none")
-        texts[name] = " ".join(str(text.value.value).split())
-    bases = [base for base in kind.__bases__ if is_dataclass(base)]
-    return texts | {name: text for base in bases for name, text in described(base).items()}
-
-
 def unit(name: str, kind: type | None = None) -> str:
     """What a name's ending says."""
     if kind in SECONDS or name in SECONDS:
@@ -210,12 +195,23 @@ def unit(name: str, kind: type | None = None) -> str:
     return UNITS.get(ending(figure), "")
 
 
+def sections() -> Iterator[tuple[str, type, str]]:
+    """Title, dataclass and words of each part."""
+    for section in SECTIONS:
+        if len(section) == 3:
+            yield section
+        else:
+            table, words = section
+            entries = isinstance(table, Table) and table.name.endswith(".json")
+            yield f"`{table.name}`" + (", each entry" if entries else ""), table.row, words
+
+
 def page() -> list[str]:
     """The parts of docs/outputs.md."""
     parts = ["# What a run leaves", "<!-- Written by `make pages`: do not edit. -->", INTRODUCTION]
     parts += ["## Files", markdown(("file", "what it is"), [(f"`{name}`", what) for name, what in FILES])]
-    for title, kind, words in SECTIONS:
-        rows = [(f"`{name}`", unit(name, kind), text) for name, text in described(kind).items()]
+    for title, kind, words in sections():
+        rows = [(f"`{name}`", unit(name, kind), text) for name, text in field_texts(kind).items()]
         parts += [f"## {title}", *([words] if words else []), markdown(("name", "unit", "meaning"), rows)]
     for files, arrays in (("flanks_*.vtp", ARRAYS), ("deformed_*.vtu", DEFORMED)):
         rows = [(f"`{name}`", unit(name.split()[0]), text) for name, text in arrays]
@@ -237,7 +233,7 @@ def schema_text() -> str:
 
 
 def _object(kind: type) -> Schema:
-    hints, texts = get_type_hints(kind), described(kind)
+    hints, texts = get_type_hints(kind), field_texts(kind)
     properties = {f.name: {"description": texts[f.name], **_type(hints[f.name])} for f in fields(kind)}
     return {"type": "object", "properties": properties, "required": list(properties)}
 

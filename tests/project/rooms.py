@@ -74,7 +74,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "results.error_bars": ("meshes", "results.archive", "results"),
     "results.tables": (
-        "meshes.gears", "gears.pressure", "gears.solution", "scene", "results.archive", "results", "results.error_bars",
+        "meshes", "meshes.gears", "gears.pressure", "gears.solution", "scene", "results.archive", "results",
+        "results.error_bars",
     ),
     "results.fields": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears.two_level", "gears",
@@ -92,7 +93,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.two_level", "gears", "gears.sweep", "results.error_bars",
     ),
     "strength.results": (
-        "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "results.drawing",
+        "meshes", "meshes.gears", "fem", "results.error_bars", "results.tables", "results.drawing",
         "strength.standard", "strength.fatigue", "strength",
     ),
     "dynamics.oscillator": ("meshes", "fem.backend"),
@@ -117,12 +118,12 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.tables", "gears.problem",
     ),
     "dynamics.results.transient": (
-        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient", "results.archive",
+        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient",
         "results.error_bars", "results.tables", "dynamics.results",
     ),
     "dynamics.figures": (
-        "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.excitation", "dynamics.oscillator",
-        "dynamics.results.*", "results.drawing", "gears.problem",
+        "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.oscillator",
+        "dynamics.results.*", "results.tables", "results.drawing",
     ),
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
@@ -140,12 +141,12 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "dynamics", "dynamics.modes", "dynamics.results.*", "dynamics.figures", "scene",
-        "scene.schema", "results.*", "wear.*",
+        "scene.schema", "results.*", "strength.results", "wear.*",
     ),
     "run.strength": (
         "meshes.mesh", "meshes.gears", "fem.parallel", "fem.backend", "gears.problem", "gears.meshing",
         "gears", "gears.pressure", "gears.solution", "scene.schema", "scene", "results.archive",
-        "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard", "strength.fatigue",
+        "results", "results.error_bars", "results.drawing", "strength.standard", "strength.fatigue",
         "strength", "strength.results", "run",
     ),
     "run.dynamics": (

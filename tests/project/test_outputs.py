@@ -17,8 +17,9 @@ import jsonschema
 import pytest
 import pyvista
 
-from evidence.pages.outputs import ARRAYS, DEFORMED, FILES, SECTIONS, described
+from evidence.pages.outputs import ARRAYS, DEFORMED, FILES, sections
 from evolvent.commands.app import main
+from evolvent.results.tables.field_texts import field_texts
 from evolvent.results.tables.summary_rows import PositionRow, ToothRow
 from evolvent.wear.gears.gear_study import BlockRow
 from evolvent.wear.results.report import GearReport, PairReport, WearReport
@@ -120,19 +121,19 @@ def test_every_file_is_named(kind: str, request: pytest.FixtureRequest) -> None:
 
 def test_columns_are_the_keys(out: Path, worn: Path) -> None:
     """positions.csv has a number of teeth for their list, teeth.csv the position before the tooth."""
-    row = [name for name in described(PositionRow) if name != "teeth"]
+    row = [name for name in field_texts(PositionRow) if name != "teeth"]
     assert sorted(columns(out / "positions.csv")) == sorted([*row, "teeth_in_contact"])
-    assert columns(out / "teeth.csv") == ["pinion_angle_deg", "friction", *described(ToothRow)]
-    assert columns(worn / "wear.csv") == list(described(BlockRow))
+    assert columns(out / "teeth.csv") == ["pinion_angle_deg", "friction", *field_texts(ToothRow)]
+    assert columns(worn / "wear.csv") == list(field_texts(BlockRow))
 
 
 def test_wear_json_has_the_keys(worn: Path) -> None:
     """Of the study, of a report and of a gear in it."""
     found = json.loads((worn / "wear.json").read_text(encoding="utf-8"))
-    assert list(found) == list(described(WearReport))
-    assert all(list(report) == list(described(PairReport)) for report in found["reports"])
+    assert list(found) == list(field_texts(WearReport))
+    assert all(list(report) == list(field_texts(PairReport)) for report in found["reports"])
     gears = [report[name] for report in found["reports"] for name in ("pinion", "wheel")]
-    assert all(list(gear) == list(described(GearReport)) for gear in gears)
+    assert all(list(gear) == list(field_texts(GearReport)) for gear in gears)
 
 
 def test_arrays_for_paraview(out: Path) -> None:
@@ -148,6 +149,6 @@ def test_arrays_for_paraview(out: Path) -> None:
 def test_every_class_has_a_section() -> None:
     """Whatever is written is on the page."""
     text = (ROOT / "docs" / "outputs.md").read_text(encoding="utf-8")
-    for title, kind, _ in SECTIONS:
+    for title, kind, _ in sections():
         part = text.split(f"## {title}\n", 1)[1].split("\n## ", 1)[0]
-        assert re.findall(r"^\| `(\w+)`", part, re.MULTILINE) == list(described(kind))
+        assert re.findall(r"^\| `(\w+)`", part, re.MULTILINE) == list(field_texts(kind))

@@ -12,9 +12,10 @@ import pytest
 
 from evidence.benchmarks.pages.page import parts
 from evidence.pages.generated import generated
-from evidence.pages.outputs import described, unit
+from evidence.pages.outputs import unit
 from evidence.pages.papers.yang_figures import level_figures
 from evidence.pages.promises import PROMISES, measured, promises
+from evolvent.results.tables.field_texts import field_texts
 from tests.support.checkout import ROOT
 
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
@@ -163,4 +164,4 @@ class Undescribed:
 def test_a_field_without_a_word_is_refused() -> None:
     """So that no column comes without a line in docs/outputs.md."""
     with pytest.raises(ValueError, match=r"Undescribed\.silent: wanted a text below it"):
-        described(Undescribed)
+        field_texts(Undescribed)

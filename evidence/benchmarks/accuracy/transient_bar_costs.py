@@ -6,7 +6,7 @@ one process with one thread. `python -m evidence.benchmarks.accuracy.transient_b
 from __future__ import annotations
 
 import argparse
-import json
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -89,9 +89,9 @@ def _seconds(case: CostCase, out: Path, which: str, bars: bool) -> float:
 
 def _require_bars(folder: Path) -> None:
     """Raises ValueError where a figure of a run has none."""
-    for fact in json.loads((folder / TRANSIENT_FACTS).read_text(encoding="utf-8")):
-        if fact["dynamic_factor_error"] is None:
-            found = f"none at {fact['speed_rpm']:g} r/min, μ = {fact['friction']:g}"
+    for fact in TRANSIENT_FACTS.read(folder):
+        if math.isnan(fact.dynamic_factor_error):
+            found = f"none at {fact.speed_rpm:g} r/min, μ = {fact.friction:g}"
             raise ValueError(f"{folder}: wanted error bars, found {found}; its log says why")
 
 

@@ -42,8 +42,8 @@ VARIANTS = {
 """What differs from the demo -> speeds [r/min]."""
 FIGURES = "dynamic_factor", "peak_to_peak_um", "max_pressure_MPa"
 COLUMNS = (
-    (TRANSIENT, "pinion_angle_deg", ("transmission_error_um", "mesh_force_N", "max_pressure_MPa")),
-    (TRANSIENT_TEETH, "tooth_angle_deg", ("normal_force_N", "max_pressure_MPa")),
+    (TRANSIENT.name, "pinion_angle_deg", ("transmission_error_um", "mesh_force_N", "max_pressure_MPa")),
+    (TRANSIENT_TEETH.name, "tooth_angle_deg", ("normal_force_N", "max_pressure_MPa")),
 )
 """Table, its place, and its columns with error bars."""
 
@@ -103,7 +103,7 @@ def computed(settings: Sequence[str], variant: str, folder: Path, speeds: Sequen
 def hit_rows(variant: str, tried: Path, best: Path) -> Iterator[HitRow]:
     """One a speed and figure, from the tables in both folders. The reference has the places of what is tried among its
     own."""
-    facts = [json.loads((folder / TRANSIENT_FACTS).read_text(encoding="utf-8")) for folder in (tried, best)]
+    facts = [json.loads((folder / TRANSIENT_FACTS.name).read_text(encoding="utf-8")) for folder in (tried, best)]
     tables = {name: [read_csv(folder / name) for folder in (tried, best)] for name, _, _ in COLUMNS}
     for own, exact in zip(*facts):
         for figure in FIGURES:

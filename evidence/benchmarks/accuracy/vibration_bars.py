@@ -8,7 +8,6 @@ the speed from a jump of either run count apart: there a figure is that of one m
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from evidence.checkout import DEMOS
-from evidence.tables import markdown, read_csv
+from evidence.tables import markdown
 from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
 from evolvent.run.dynamics.vibration import run_dynamics
 from evolvent.scene.scene import load_scene
@@ -67,10 +66,10 @@ def swept(level: str, positions: int, variant: str, out: Path) -> Swept:
     scene = load_scene(DEMOS / "he2022_dynamics.toml", [*settings, bars, *SPEEDS, variant])
     folder = out / f"{level}_{positions}"
     run_dynamics(scene, folder, resume=True, quiet=True)
-    rows, known = read_csv(folder / RESPONSE), json.loads((folder / DYNAMICS).read_text(encoding="utf-8"))
+    rows, known = RESPONSE.read(folder), DYNAMICS.read(folder)
     names = "speed_rpm", *(name for figure in FIGURES for name in (figure, f"{figure}_error"))
-    columns = {name: np.array([float(row[name]) for row in rows]) for name in names}
-    return Swept(columns, np.array([*known["jumps_up_rpm"], *known["jumps_down_rpm"]]))
+    columns = {name: np.array([getattr(row, name) for row in rows]) for name in names}
+    return Swept(columns, np.array([*known.jumps_up_rpm, *known.jumps_down_rpm]))
 
 
 def hit_rows(variant: str, positions: int, tried: Swept, best: Swept) -> Iterator[HitRow]:

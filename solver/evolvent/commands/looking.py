@@ -94,10 +94,10 @@ def mesh(
 
 def plot(
     directory: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Where a run has put its results.", parser=given_path)
+        Path, typer.Argument(metavar="DIR", help="Where a command has put its results.", parser=given_path)
     ],
 ) -> None:
-    """Draw the pictures of a finished run again, and that of `evolvent transient`."""
+    """Draw the pictures of a finished command again."""
     with reported():
         from evolvent.run.redraw import plot_folder
 

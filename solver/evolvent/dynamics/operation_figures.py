@@ -57,11 +57,15 @@ class OperationFigures:
         number = int(np.argmin(np.abs(excitation.loaded.forces - pair.model.load)))
         found = response(pair.model, operation.period, operation.state, operation.repeats)
         return OperationFigures(
-            60.0 / (pair.teeth * operation.period), pair.natural_speed, 1e-3 * pair.mean_stiffness,
-            1e-3 * float(np.mean(excitation.secant[:, number])),
-            UM * float(np.ptp(excitation.unloaded_error)), UM * float(np.ptp(excitation.loaded.errors[:, number])),
-            UM * found.equivalent_amplitude, pair.model.load, found.largest_force,
-            operation.heaviest_torque_share, found.smallest_force, found.apart, operation.lifted, operation.repeats,
+            speed_rpm=60.0 / (pair.teeth * operation.period), natural_speed_rpm=pair.natural_speed,
+            mean_stiffness_N_per_um=1e-3 * pair.mean_stiffness,
+            mean_secant_stiffness_N_per_um=1e-3 * float(np.mean(excitation.secant[:, number])),
+            unloaded_peak_to_peak_um=UM * float(np.ptp(excitation.unloaded_error)),
+            static_peak_to_peak_um=UM * float(np.ptp(excitation.loaded.errors[:, number])),
+            equivalent_amplitude_um=UM * found.equivalent_amplitude, static_force_N=pair.model.load,
+            largest_force_N=found.largest_force, heaviest_torque_share=operation.heaviest_torque_share,
+            smallest_force_N=found.smallest_force, separated_share=found.apart, lifted_share=operation.lifted,
+            repeats=operation.repeats,
         )
 
 

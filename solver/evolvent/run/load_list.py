@@ -13,8 +13,10 @@ from evolvent.gears.load_list import LoadList
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
-from evolvent.results.drawing.picture_files import Picture, draw
-from evolvent.results.tables.load_table import LOADS, load_results, write_loads
+from evolvent.results.drawing.picture_files import draw
+from evolvent.results.drawing.table_pictures import from_tables
+from evolvent.results.figures.loads_picture import LOADS_PICTURE
+from evolvent.results.tables.load_table import LOADS, RUNS, load_results
 from evolvent.run.folder_checks import check_folder, require_no_study
 from evolvent.run.scene_run import run_scene
 from evolvent.run.start import resume_point, scene_to_solve
@@ -22,8 +24,6 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import under_torque
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
-
-PICTURE = "loads.png"
 
 
 def run_loads(
@@ -45,7 +45,7 @@ def run_loads(
     def check() -> None:
         with locked(out):  # a folder that cannot be written is refused here
             require_no_study(out)
-            RunFolder(out).require_free([LOADS, f"pictures/{PICTURE}"])
+            RunFolder(out).require_free([LOADS.name, f"pictures/{LOADS_PICTURE.name}"])
             for name, each in scenes.items():
                 check_folder(each, out / name, resume, overwrite, source)
                 if resume:  # before the first of them is computed
@@ -73,18 +73,12 @@ def load_scenes(scene: Scene, percents: Sequence[float]) -> Mapping[str, Scene]:
 def _folder(percent: float) -> str:
     """Its name, another one for each percentage."""
     whole, point, decimals = str(float(percent)).partition(".")
-    return f"load_{whole:0>3}{point}{decimals}_percent"
+    return RUNS.format(f"{whole:0>3}{point}{decimals}")
 
 
 def _written(out: Path, names: Sequence[str]) -> list[str]:
     """Writes the table and the picture. On rank 0 alone. Raises WriteError, FolderError."""
     with locked(out):
-        results, folder = load_results([out / name for name in names]), RunFolder(out)
-        write_loads(folder, results)
-
-        def drawn() -> bytes:
-            from evolvent.results.figures.load_list import loads_picture  # matplotlib takes a second to import
-
-            return loads_picture(results)
-
-        return list(draw([Picture(PICTURE, drawn)], folder).failures)
+        folder = RunFolder(out)
+        LOADS.write(folder, [each.row for each in load_results(out / name for name in names)])
+        return list(draw(from_tables([LOADS_PICTURE], out), folder).failures)

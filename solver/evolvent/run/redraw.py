@@ -1,4 +1,4 @@
-"""Draws the pictures of a finished run or transient again, without touching other files of its folder."""
+"""Draws the pictures of a finished command again, without touching other files of its folder."""
 
 from __future__ import annotations
 
@@ -6,44 +6,53 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
-from evolvent.dynamics.results.transient.kept_tables import PICTURE, START_PICTURE, KeptTables
-from evolvent.dynamics.results.transient.rows import TRANSIENT
+from evolvent.dynamics.figures.all import (
+    EXCITATION_PICTURE,
+    OPERATION_PICTURE,
+    TRANSIENT_PICTURES,
+    VIBRATION_PICTURES,
+)
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
-from evolvent.results.drawing.picture_files import Drawn, Picture, draw
+from evolvent.results.drawing.picture_files import Drawn, draw
+from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.results.figures.all import pictures
+from evolvent.results.figures.loads_picture import LOADS_PICTURE
 from evolvent.results.run_data import RunData, read_run
 from evolvent.run.folder_checks import changed_files
+from evolvent.strength.results.pictures import FATIGUE_PICTURE, ROOT_STRESS_PICTURE
 
 RUN = "summary.json"
-DRAWN_AGAIN = RUN, TRANSIENT
-"""Files that say that there is something to draw: of `evolvent run`, of `evolvent transient`."""
+"""File that says that a run is finished."""
+FROM_TABLES = (
+    LOADS_PICTURE, OPERATION_PICTURE, EXCITATION_PICTURE, *VIBRATION_PICTURES, *TRANSIENT_PICTURES,
+    ROOT_STRESS_PICTURE, FATIGUE_PICTURE,
+)
 
 
 def plot_folder(out: Path) -> Drawn:
-    """Draws the pictures of a run from its scene.toml and its results, that of a transient from its tables, or both.
-
-    out: folder with one of `DRAWN_AGAIN`. Pictures are drawn even where the scene asks for none, the animation of a run
+    """Draws the pictures of whatever commands have written to a folder: of a run and of its wear from scene.toml and
+    their results, all others from tables. Pictures are drawn even where the scene asks for none, the animation of a run
     only where it does, that of a transient not: the contact lines are in none of its tables.
 
-    Raises SceneError, ArchiveError, WriteError; FolderError where there is neither, or where a run is computing into
-    the folder.
+    Raises SceneError, ArchiveError, WriteError; FolderError where there is nothing to draw, or where a run is computing
+    into the folder.
     """
     _require_finished(out)
     with locked(out):
         drawn = _run(out) if (out / RUN).is_file() else Drawn((), ())
-        return _both(drawn, _transient(out)) if (out / TRANSIENT).is_file() else drawn
+        return _both(drawn, draw(from_tables(FROM_TABLES, out), RunFolder(out)))
 
 
 def _require_finished(out: Path) -> None:
     """Raises FolderError where there is nothing to draw. os.path, unlike pathlib, takes names that no file can have."""
-    if any(os.path.isfile(out / name) for name in DRAWN_AGAIN):
+    if os.path.isdir(out) and ((out / RUN).is_file() or any(picture.is_of(out) for picture in FROM_TABLES)):
         return
-    missing = f"no {RUN} in it, and no {TRANSIENT}" if os.path.isdir(out) else "no such directory"
+    missing = f"no {RUN} in it, nor all tables of another picture" if os.path.isdir(out) else "no such directory"
     begun = " --resume" if os.path.exists(out / "results/state.npz") else ""
     raise FolderError(
-        f"{out}: found {missing}; allowed: the --out of a finished run or transient; remedy: run `evolvent run "
-        f"SCENE.toml --out {out}{begun}` first"
+        f"{out}: found {missing}; allowed: the --out of a finished run, or of another command that draws; remedy: run "
+        f"`evolvent run SCENE.toml --out {out}{begun}` first"
     )
 
 
@@ -62,23 +71,6 @@ def _run(out: Path) -> Drawn:
     from evolvent.wear.results.report import read_worn
 
     return _both(drawn, draw(figures.pictures(read_worn(out)), RunFolder(out)))
-
-
-def _transient(out: Path) -> Drawn:
-    tables = KeptTables.read(out)
-
-    def drawn() -> bytes:
-        from evolvent.dynamics.figures.transient import transient_picture  # matplotlib takes a second to import
-
-        return transient_picture(tables.title, tables.rows, tables.teeth, tables.facts)
-
-    def start_drawn() -> bytes:
-        from evolvent.dynamics.figures.transient_start import start_picture
-
-        return start_picture(tables.title, tables.started)
-
-    started = [Picture(START_PICTURE, start_drawn)] if tables.started else []
-    return draw([Picture(PICTURE, drawn), *started], RunFolder(out))
 
 
 def _with_pictures(run: RunData) -> RunData:

@@ -10,9 +10,10 @@ from pathlib import Path
 
 from mpi4py import MPI
 
+from evolvent.dynamics.figures.all import OPERATION_PICTURE
 from evolvent.dynamics.operating_point import Operation
 from evolvent.dynamics.operation_figures import OperationFigures, operation_warnings
-from evolvent.dynamics.results.operation import PICTURE, write_operation
+from evolvent.dynamics.results.operation import write_operation
 from evolvent.dynamics.under_mesh_force import UnderMeshForce
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
@@ -22,7 +23,8 @@ from evolvent.gears.meshing.undercut import undercut_warnings
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
-from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.results.drawing.picture_files import draw
+from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.results.fields.deformation import deformation_of
 from evolvent.run.coarse_run import companion_of
 from evolvent.run.context import RunContext, run_context
@@ -126,18 +128,13 @@ def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None) -> No
 def _write_operation(run: RunContext, scene: Scene, operation: Operation) -> None:
     """Writes the mesh force under which contact was computed, and where it comes from. Collective."""
 
-    def drawn() -> bytes:
-        from evolvent.dynamics.figures.operation import operation_picture  # matplotlib takes a second to import
-
-        return operation_picture(operation)
-
     def written() -> None:
         assert scene.dynamics is not None
         loaded = gear_problem(scene)
         radius = loaded.pair.gears[loaded.torque_on].base_radius
         write_operation(run.folder, operation, scene.dynamics.coming, radius)
         if wanted_output(scene).pictures:
-            log_pictures(draw([Picture(PICTURE, drawn)], run.folder), run.log)
+            log_pictures(draw(from_tables([OPERATION_PICTURE], run.folder.out), run.folder), run.log)
 
         for sentence in operation_warnings([OperationFigures.of(operation)]):
             run.log.warning(sentence)

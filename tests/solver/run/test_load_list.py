@@ -17,6 +17,7 @@ from evolvent.run.load_list import load_scenes, run_loads
 from evolvent.run.scene_run import run_scene
 from evolvent.scene.scene import SceneError, load_scene
 from tests.support.gear_cases import spur_scene
+from tests.support.running.redrawn import redrawn
 
 SHORT = (
     "mesh.level=quick", "sweep.positions=3", "contact.friction=[0.0]", "output.pictures=false", "output.fields=false",
@@ -27,7 +28,7 @@ SHORT = (
 def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Half and all of the torque: two folders with the torque in their summaries, a line each in the table that repeats
     their figures; the gears and their coarse companion are condensed once each. Resumed, nothing is condensed. The
-    scene that a run leaves gives the same figures alone."""
+    scene that a run leaves gives the same figures alone. `evolvent plot` draws the picture again."""
     calls, condensed = [], gear_loads.condensed_gears
 
     def counted(*given: object, **named: object) -> object:
@@ -35,12 +36,12 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
         return condensed(*given, **named)  # type: ignore[arg-type]
 
     monkeypatch.setattr(gear_loads, "condensed_gears", counted)
-    scene = spur_scene(*SHORT)
-    assert run_loads(load_scenes(scene, [50.0, 100.0]), tmp_path, quiet=True) == []
+    scene, out = spur_scene(*SHORT), tmp_path / "out"
+    assert run_loads(load_scenes(scene, [50.0, 100.0]), out, quiet=True) == []
     assert len(calls) == 2
-    with open(tmp_path / "loads.csv", encoding="utf-8") as stream:
+    with open(out / "loads.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    folders = [tmp_path / name for name in ("load_050.0_percent", "load_100.0_percent")]
+    folders = [out / name for name in ("load_050.0_percent", "load_100.0_percent")]
     torque = scene.load.torque_Nm
     assert list(rows[0]) == [field.name for field in fields(LoadRow)]
     assert [float(row["torque_Nm"]) for row in rows] == [0.5 * torque, torque]
@@ -55,8 +56,8 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
         for key in ("transmission_error_peak_to_peak_um", "max_pressure_MPa"):
             assert float(row[key]) == pytest.approx(figures[key], rel=1e-8)
             assert float(row[key + "_error"]) == pytest.approx(figures["estimated_error"][key], rel=1e-8)
-    assert (tmp_path / "pictures" / "loads.png").stat().st_size > 10_000
-    run_loads(load_scenes(scene, [50.0, 100.0]), tmp_path, resume=True, quiet=True)
+    assert redrawn(out, tmp_path) == {"loads.png"}
+    run_loads(load_scenes(scene, [50.0, 100.0]), out, resume=True, quiet=True)
     assert len(calls) == 2
     run_scene(load_scene(folders[0] / "scene.toml"), tmp_path / "alone", quiet=True)
     alone, found = (

@@ -11,6 +11,8 @@ import pytest
 
 from evolvent.commands.app import Exit
 from evolvent.results.archive.archive import Archive
+from evolvent.results.drawing.table_pictures import from_tables
+from evolvent.run.redraw import FROM_TABLES
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
 from evolvent_meshes.arrays import Floats
@@ -56,6 +58,12 @@ def assert_same(one: Path, other: Path, tolerance: float) -> None:
         found, wanted = (columns(folder / name, *without) for folder in (one, other))
         for column, values in wanted.items():
             assert found[column] == pytest.approx(values, rel=tolerance, abs=tolerance), column
+
+
+def test_picture_of_the_mesh_force_is_drawn_from_tables(whole: Path) -> None:
+    """One of those that `evolvent plot` draws, though the scene asks for none."""
+    (picture,) = from_tables(FROM_TABLES, whole)
+    assert picture.name == "30_mesh_force.png" and picture.draw().startswith(b"\x89PNG")
 
 
 def test_positions_have_the_force_of_their_phase(whole: Path) -> None:

@@ -205,8 +205,8 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "mesh: a folder": (["mesh", SCENE, "--out", "{folder}"], "--out", "{folder}", ".msh"),
     "mesh: over a file": (["mesh", SCENE, "--out", SCENE], "--out", "scene.toml", "ends in .msh"),
     # plot
-    "plot: nothing": (["plot"], "DIR", "nothing", "where a run has put its results"),
-    "plot: empty": (["plot", ""], "DIR", "an empty text", "where a run has put its results"),
+    "plot: nothing": (["plot"], "DIR", "nothing", "where a command has put its results"),
+    "plot: empty": (["plot", ""], "DIR", "an empty text", "where a command has put its results"),
     "plot: no such folder": (["plot", "{folder}/no"], "{folder}/no", "no such directory", "of a finished run"),
     "plot: a name too long": (["plot", "n" * 5000], "n" * 5000, "no such directory", "of a finished run"),
     "plot: a file": (["plot", SCENE], SCENE, "no such directory", "the --out of a finished run"),

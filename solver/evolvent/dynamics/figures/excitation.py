@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.results.curves import (
-    LOADED,
-    NO_COMPANION,
-    TANGENT,
-    CoarseExcitation,
-    PitchCurve,
-    pitch_curves,
-    unloaded_curve,
-)
+from evolvent.dynamics.results.curves import LOADED, UNLOADED
 from evolvent.dynamics.results.design_load import ExcitationFacts
+from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
 from evolvent.results.drawing.style import INK, foot, png, sheet, styled, torque_colours
 from evolvent_meshes.arrays import Floats
 
@@ -28,20 +21,56 @@ BARS = (
 )
 
 
+@dataclass(frozen=True, eq=False)
+class PitchColumns:
+    """Columns of excitation.csv over n positions of a pitch, m torques."""
+
+    phase: Floats
+    """(n + 1,) from 0 to 1 [pitch]."""
+    force: Floats
+    """(m,) of the mesh [N]."""
+    unloaded: Floats
+    """(n,) transmission error [µm]."""
+    error: Floats
+    """(2, m, n) transmission error under each torque, and its error bar [µm]."""
+    stiffness: Floats
+    """(2, m, n) tangent stiffness, and its error bar [N/µm]."""
+
+    @staticmethod
+    def of(rows: Sequence[ExcitationRow]) -> PitchColumns:
+        """Of rows by torque and position."""
+        torques = len({row.torque_Nm for row in rows})
+
+        def over(name: str) -> Floats:
+            return np.array([getattr(row, name) for row in rows]).reshape(torques, -1)
+
+        def both(name: str) -> Floats:
+            return np.array([over(name), over(f"{name}_error")])
+
+        unloaded = over("unloaded_transmission_error_um")[0]
+        return PitchColumns(
+            phase=np.linspace(0.0, 1.0, len(unloaded) + 1),
+            force=over("mesh_force_N")[:, 0],
+            unloaded=unloaded,
+            error=both("transmission_error_um"),
+            stiffness=both("tangent_stiffness_N_per_um"),
+        )
+
+
 def excitation_picture(
-    excitation: MeshExcitation, facts: ExcitationFacts, companion: CoarseExcitation = NO_COMPANION
+    facts: ExcitationFacts, rows: Sequence[ExcitationRow], harmonics: Sequence[HarmonicRow]
 ) -> bytes:
     """PNG of `excitation_figure`."""
     with styled():
-        return png(excitation_figure(excitation, facts, companion))
+        return png(excitation_figure(facts, rows, harmonics))
 
 
 def excitation_figure(
-    excitation: MeshExcitation, facts: ExcitationFacts, companion: CoarseExcitation = NO_COMPANION
+    facts: ExcitationFacts, rows: Sequence[ExcitationRow], harmonics: Sequence[HarmonicRow]
 ) -> Figure:
     """Transmission error and stiffness over the pitch under each torque, the force over the deflection, and the
-    peak-to-peak transmission error over the torque, with error bars from the companion."""
-    loaded, curves, torques = excitation.loaded, list(pitch_curves(excitation, companion)), facts.torques_Nm
+    peak-to-peak transmission error over the torque, with error bars where they are known."""
+    pitch, torques = PitchColumns.of(rows), facts.torques_Nm
     figure = sheet(
         "Excitation by the mesh: transmission error and mesh stiffness over a pitch, without friction",
         f"{facts.title}. Mesh {facts.mesh_level}, {facts.positions} positions, {len(torques)} torques from "
@@ -50,18 +79,18 @@ def excitation_figure(
     )
     grid = figure.subplots(2, 2)
     colours = torque_colours(len(torques))
-    phase = np.linspace(0.0, 1.0, len(loaded.angles) + 1)
-    _over_pitch(grid[0, 0], phase, [each[LOADED] for each in curves], colours, "transmission error [µm]")
-    grid[0, 0].plot(phase, _closed(unloaded_curve(excitation).values), "--", color=INK, label="unloaded")
+    _over_pitch(grid[0, 0], pitch.phase, pitch.error, colours, "transmission error [µm]")
+    grid[0, 0].plot(pitch.phase, _closed(pitch.unloaded), "--", color=INK, label="unloaded")
     grid[0, 0].legend(loc="best")
-    _over_pitch(grid[0, 1], phase, [each[TANGENT] for each in curves], colours, "tangent mesh stiffness [N/µm]")
+    _over_pitch(grid[0, 1], pitch.phase, pitch.stiffness, colours, "tangent mesh stiffness [N/µm]")
     grid[0, 1].set_ylim(bottom=0.0)
-    _draw_force(grid[1, 0], excitation, phase)
+    _draw_force(grid[1, 0], pitch)
     beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0), "fontsize": 8.0, "title_fontsize": 8.0}
     grid[0, 1].legend(grid[0, 1].lines, [f"{torque:.4g}" for torque in torques], title="N·m", **beside)
-    _draw_harris(grid[1, 1], [unloaded_curve(excitation), *(each[LOADED] for each in curves)], torques, colours)
+    sizes = [row for row in harmonics if row.harmonic == 1 and row.quantity in (UNLOADED, LOADED)]
+    _draw_harris(grid[1, 1], sizes, colours)
     said = "Secant stiffness: excitation.csv; harmonics.csv."
-    foot(figure, *([said] if companion.excitation is None else [said, BARS]))
+    foot(figure, *([said, BARS] if np.isfinite(pitch.error[1]).all() else [said]))
     return figure
 
 
@@ -77,14 +106,12 @@ def _design(facts: ExcitationFacts) -> str:
     return f" Peak-to-peak transmission error least at {facts.design_torque_Nm:.3g} N·m{known}: {least}."
 
 
-def _over_pitch(
-    axes: Axes, phase: Floats, curves: Sequence[PitchCurve], colours: Sequence[object], label: str
-) -> None:
-    """Values over the pitch, closed to its end, a curve for each torque, in a band of its error."""
-    for curve, colour in zip(curves, colours):
-        values = _closed(curve.values)
-        if curve.coarse is not None:
-            bars = _closed(curve.bars)
+def _over_pitch(axes: Axes, phase: Floats, curves: Floats, colours: Sequence[object], label: str) -> None:
+    """Values over the pitch, closed to its end, a curve for each torque, in a band of its error. curves: (2, m, n)
+    values and errors."""
+    for curve, error, colour in zip(*curves, colours):
+        values, bars = _closed(curve), _closed(error)
+        if np.isfinite(bars).all():
             axes.fill_between(phase, values - bars, values + bars, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(phase, values, color=colour, marker=".", markersize=3.0)
     axes.set_xlim(0.0, 1.0)
@@ -92,12 +119,11 @@ def _over_pitch(
     axes.set_ylabel(label)
 
 
-def _draw_force(axes: Axes, excitation: MeshExcitation, phase: Floats) -> None:
+def _draw_force(axes: Axes, pitch: PitchColumns) -> None:
     """Force over the deflection, at four positions."""
-    loaded = excitation.loaded
-    for i in range(0, len(loaded.angles), max(1, len(loaded.angles) // 4)):
-        x, force = np.append(0.0, 1e3 * excitation.depths[i]), np.append(0.0, 1e-3 * loaded.forces)
-        axes.plot(x, force, marker=".", label=f"{phase[i]:.2g} pitch")
+    for i in range(0, len(pitch.unloaded), max(1, len(pitch.unloaded) // 4)):
+        x, force = np.append(0.0, pitch.error[0, :, i] - pitch.unloaded[i]), np.append(0.0, 1e-3 * pitch.force)
+        axes.plot(x, force, marker=".", label=f"{pitch.phase[i]:.2g} pitch")
     axes.set_xlabel("deflection beyond first contact [µm]")
     axes.set_ylabel("mesh force [kN]")
     axes.set_xlim(left=0.0)
@@ -105,15 +131,14 @@ def _draw_force(axes: Axes, excitation: MeshExcitation, phase: Floats) -> None:
     axes.legend(loc="best")
 
 
-def _draw_harris(
-    axes: Axes, curves: Sequence[PitchCurve], torques: Sequence[float], colours: Sequence[object]
-) -> None:
-    """Peak-to-peak transmission error over the torque. curves: unloaded, then under each torque."""
-    size, bars = (np.array(each) for each in zip(*((np.ptp(c.values), c.peak_to_peak_error) for c in curves)))
-    axes.plot([0.0, *torques], size, color=INK, lw=1.0, zorder=1)
+def _draw_harris(axes: Axes, rows: Sequence[HarmonicRow], colours: Sequence[object]) -> None:
+    """Peak-to-peak transmission error over the torque. rows: unloaded, then under each torque."""
+    columns = [(row.torque_Nm, row.peak_to_peak, row.peak_to_peak_error) for row in rows]
+    torques, size, bars = np.array(columns).T
+    axes.plot(torques, size, color=INK, lw=1.0, zorder=1)
     if np.isfinite(bars).all():
-        axes.errorbar(torques, size[1:], bars[1:], linestyle="", color=INK, elinewidth=1.0, capsize=3.0, zorder=2)
-    axes.scatter(torques, size[1:], 36.0, color=colours, zorder=3)
+        axes.errorbar(torques[1:], size[1:], bars[1:], linestyle="", color=INK, elinewidth=1.0, capsize=3.0, zorder=2)
+    axes.scatter(torques[1:], size[1:], 36.0, color=colours, zorder=3)
     axes.set_xlim(0.0, 1.05 * torques[-1])
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("torque [N·m]")

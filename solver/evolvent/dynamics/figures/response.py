@@ -8,12 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.oscillator.response import Response
-from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
-from evolvent.dynamics.pair_model import Drive
-from evolvent.dynamics.results.response import BranchRow, speed_of
-from evolvent.dynamics.results.response_errors import VibrationErrors
-from evolvent.gears.problem.iso_dynamic_factor import MethodB
+from evolvent.dynamics.results.response import BranchRow, DriveSummary, ResponseRow
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from evolvent_meshes.arrays import Floats
 
@@ -31,56 +26,48 @@ BAND = (
 """Where error bars are known."""
 
 
-def response_picture(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB,
-    errors: VibrationErrors,
-) -> bytes:
+def response_picture(known: DriveSummary, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> bytes:
     """PNG of `response_figure`."""
     with styled():
-        return png(response_figure(drive, swept, found, branch, iso, errors))
+        return png(response_figure(known, rows, branch))
 
 
-def response_figure(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB,
-    errors: VibrationErrors,
-) -> Figure:
+def response_figure(known: DriveSummary, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> Figure:
     """Equivalent amplitude, dynamic factor with that of ISO 6336-1, and separated share over the speed, up and down,
     and the unstable steady states between."""
-    speeds = np.array([speed_of(drive, float(period)) for period in swept.periods])
+    runs = {way: [row for row in rows if row.way == way] for way in ("up", "down")}
+    speeds = np.array([row.speed_rpm for row in runs["up"]])
     figure = sheet(
         "Vibration over the speed: running up, running down, and the steady states between",
-        f"Natural speed {drive.natural_speed:.0f} r/min at the mean {_kind(drive)} stiffness of "
-        f"{1e-3 * drive.mean_stiffness:.1f} N/µm, with {_bodies(drive)} gear bodies{_folds(drive, swept)}.",
+        f"Natural speed {known.natural_speed_rpm:.0f} r/min at the mean {_stiffness_name(known)} stiffness of "
+        f"{known.mean_stiffness_N_per_um:.1f} N/µm, with {known.bodies} gear bodies{_folds(known)}.",
         (11.0, 8.6),
     )
     amplitude, factor, apart = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 2.0, 1.0))
     for way, colour, style in (("up", PINION, "-"), ("down", WHEEL, "--")):
-        runs = swept.up if way == "up" else swept.down
-        figures = (
-            [1e3 * each.equivalent_amplitude for each in found[way]],
-            [each.largest_force / drive.model.load for each in found[way]],
-            [100.0 * each.apart for each in found[way]],
-        )
-        for axes, values in zip((amplitude, factor, apart), figures):
+        columns = [
+            (row.equivalent_amplitude_um, row.dynamic_factor, 100.0 * row.separated_share) for row in runs[way]
+        ]
+        for axes, values in zip((amplitude, factor, apart), np.array(columns).T):
             axes.plot(speeds, values, style, color=colour, label=f"running {way}")
-            _mark_unrepeated(axes, speeds, values, runs)
+            _mark_unrepeated(axes, speeds, values, runs[way])
         if way == "up":
-            _draw_errors(amplitude, speeds, figures[0], 1e3 * errors.amplitude[way])
-            _draw_errors(factor, speeds, figures[1], errors.dynamic_factor[way])
-    alike = all(run.repeats == 1 for run in (*swept.up, *swept.down))
+            _draw_errors(amplitude, runs[way], "equivalent_amplitude_um")
+            _draw_errors(factor, runs[way], "dynamic_factor")
+    alike = all(row.repeats == 1 for row in rows)
     hollow = "" if alike else " Hollow: a motion that does not repeat with every mesh."
     _draw_branch(amplitude, branch)
-    if iso.has_factor:
-        _draw_iso(factor, speeds, iso)
+    if _has_iso(known):
+        _draw_iso(factor, known, runs["up"])
     for axes in (amplitude, factor, apart):
         for part in SUPERHARMONICS:
-            axes.axvline(drive.natural_speed / part, color=FAINT, lw=0.8, ls=":", zorder=0)
+            axes.axvline(known.natural_speed_rpm / part, color=FAINT, lw=0.8, ls=":", zorder=0)
         axes.set_ylim(bottom=0.0)
-    beyond = _limit(amplitude, found, branch)
+    beyond = _limit(amplitude, rows, branch)
     apart.set_ylim(top=max(LEAST_SHARE, apart.get_ylim()[1]))
     for part in SUPERHARMONICS:
         name = "natural" if part == 1 else f"1/{part}"
-        amplitude.text(drive.natural_speed / part, 0.995, f" {name}", va="top", color=INK, fontsize=8.0,
+        amplitude.text(known.natural_speed_rpm / part, 0.995, f" {name}", va="top", color=INK, fontsize=8.0,
                        transform=amplitude.get_xaxis_transform(), clip_on=True)
     amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
@@ -91,24 +78,25 @@ def response_figure(
     foot(
         figure,
         "Dotted: the natural speed and its half, third and quarter." + hollow + beyond,
-        _iso_words(iso),
-        *([BAND] if np.isfinite(errors.dynamic_factor["up"]).any() else []),
+        _iso_words(known),
+        *([BAND] if any(np.isfinite(row.dynamic_factor_error) for row in runs["up"]) else []),
     )
     return figure
 
 
-def _bodies(drive: Drive) -> str:
-    return "rigid" if drive.settings.bodies is None else "elastic"
+def _stiffness_name(known: DriveSummary) -> str:
+    """'secant' or 'tangent': the mesh stiffness whose mean the natural speed has."""
+    return "secant" if known.mesh == "secant" else "tangent"
 
 
-def _kind(drive: Drive) -> str:
-    """Of the mean stiffness."""
-    return "secant" if drive.settings.mesh == "secant" else "tangent"
+def _has_iso(known: DriveSummary) -> bool:
+    """Whether K_v of ISO 6336-1 is known."""
+    return None not in (known.iso_base_pitch_deviation_um, known.iso_profile_deviation_um)
 
 
-def _limit(axes: Axes, found: dict[str, list[Response]], branch: Sequence[BranchRow]) -> str:
+def _limit(axes: Axes, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> str:
     """Keeps the axis to what is run up and down where steady states go on far above; a sentence where it does."""
-    run = 1e3 * max(each.equivalent_amplitude for runs in found.values() for each in runs)
+    run = max(row.equivalent_amplitude_um for row in rows)
     highest = max(row.equivalent_amplitude_um for row in branch)
     if highest <= FAR_ABOVE * run:
         return ""
@@ -116,43 +104,45 @@ def _limit(axes: Axes, found: dict[str, list[Response]], branch: Sequence[Branch
     return f" Steady states that no run comes to go on to {highest:.3g} µm: branch.csv."
 
 
-def _draw_errors(axes: Axes, speeds: Floats, values: Sequence[float], errors: Floats) -> None:
-    """A band around the values of running up (n,); none where the errors (n,) are not known."""
+def _draw_errors(axes: Axes, rows: Sequence[ResponseRow], name: str) -> None:
+    """A band around the values of running up; none where their errors are not known. name: of the column."""
+    speeds, values, errors = (np.array([getattr(row, each) for row in rows])
+                              for each in ("speed_rpm", name, f"{name}_error"))
     if np.isfinite(errors).any():
-        ends = np.asarray(values) - errors, np.asarray(values) + errors
+        ends = values - errors, values + errors
         axes.fill_between(speeds, *ends, color=PINION, alpha=0.25, linewidth=0.0, zorder=1, label="its error")
 
 
-def _draw_iso(axes: Axes, speeds: Floats, iso: MethodB) -> None:
+def _draw_iso(axes: Axes, known: DriveSummary, rows: Sequence[ResponseRow]) -> None:
     """K_v, and the range of its main resonance."""
-    begin, end = (iso.resonance_speed * ratio for ratio in iso.main_resonance)
-    fine = np.linspace(speeds[0], speeds[-1], 1000)
-    axes.plot(fine, [iso.factor(float(speed)) for speed in fine], color=INK, lw=0.9, label=ISO)
-    axes.axvspan(begin, end, color=FAINT, alpha=0.12, lw=0.0, zorder=0)
+    speeds, factors = zip(*((row.speed_rpm, row.dynamic_factor_iso) for row in rows))
+    axes.plot(speeds, factors, color=INK, lw=0.9, label=ISO)
+    axes.axvspan(*known.iso_main_resonance_rpm, color=FAINT, alpha=0.12, lw=0.0, zorder=0)
     handles, labels = axes.get_legend_handles_labels()
     axes.legend([handles[labels.index(ISO)]], [ISO], loc="upper right")  # the panel above names the other curves
 
 
-def _iso_words(iso: MethodB) -> str:
+def _iso_words(known: DriveSummary) -> str:
     """What the curve of ISO 6336-1 is for, or what it wants."""
-    if not iso.has_factor:
+    if not _has_iso(known):
         return NO_ISO
     return (
-        f"{ISO}, Method B: for base pitch and profile deviations of {iso.accuracy.base_pitch_deviation:.3g} and "
-        f"{iso.accuracy.profile_deviation:.3g} µm; shaded: its main resonance around {iso.resonance_speed:.0f} r/min."
+        f"{ISO}, Method B: for base pitch and profile deviations of {known.iso_base_pitch_deviation_um:.3g} and "
+        f"{known.iso_profile_deviation_um:.3g} µm; shaded: its main resonance around "
+        f"{known.iso_resonance_speed_rpm:.0f} r/min."
     )
 
 
-def _folds(drive: Drive, swept: SpeedSweep) -> str:
+def _folds(known: DriveSummary) -> str:
     """Where the branch turns back."""
-    speeds = sorted({f"{speed_of(drive, swept.branch.points[i].period):.0f}" for i in swept.branch.folds}, key=float)
+    speeds = sorted({f"{speed:.0f}" for speed in known.folds_rpm}, key=float)
     return f"; steady states turn back at {', '.join(speeds)} r/min" if speeds else "; no steady state turns back"
 
 
-def _mark_unrepeated(axes: Axes, speeds: Floats, values: Sequence[float], runs: Sequence[Running]) -> None:
+def _mark_unrepeated(axes: Axes, speeds: Floats, values: Floats, runs: Sequence[ResponseRow]) -> None:
     """Motions that do not repeat with every mesh."""
-    other = [i for i, run in enumerate(runs) if run.repeats != 1]
-    axes.plot(speeds[other], np.asarray(values)[other], "o", markersize=4.0, markerfacecolor="white", color=INK)
+    other = [i for i, row in enumerate(runs) if row.repeats != 1]
+    axes.plot(speeds[other], values[other], "o", markersize=4.0, markerfacecolor="white", color=INK)
 
 
 def _draw_branch(axes: Axes, branch: Sequence[BranchRow]) -> None:

@@ -38,8 +38,9 @@ def transient_figure(
     title: str, rows: Sequence[TransientRow], teeth: Sequence[TransientToothRow], facts: Sequence[TransientFacts]
 ) -> Figure:
     """A line of panels for each speed: transmission error and mesh force over two pitches, pressure of a tooth over its
-    engagement."""
-    speeds, frictions = (sorted(set(each)) for each in zip(*((fact.speed_rpm, fact.friction) for fact in facts)))
+    engagement. rows, facts: of the cases in the same order; of rows numbers have nine digits."""
+    cases = dict(zip(dict.fromkeys((row.speed_rpm, row.friction) for row in rows), facts))
+    speeds, frictions = (sorted(set(each)) for each in zip(*cases))
     figure = sheet(f"{title}: contact with inertia", SUBTITLE, (WIDTH, HEADER + ROW * len(speeds)))
     grid = figure.subplots(len(speeds), 3, squeeze=False, width_ratios=(1.0, 1.0, 1.2))
     banded = len(frictions) <= BANDS and any(np.isfinite(row.transmission_error_um_error) for row in rows)
@@ -47,10 +48,9 @@ def transient_figure(
     for panels, speed in zip(grid, speeds):
         for friction, colour in zip(frictions, colours):
             case = (speed, friction)
-            load = next(fact.load_N for fact in facts if (fact.speed_rpm, fact.friction) == case)
             own = [row for row in rows if (row.speed_rpm, row.friction) == case]
             _errors(panels[0], own, colour, banded)
-            _forces(panels[1], own, load, colour, banded)
+            _forces(panels[1], own, cases[case].load_N, colour, banded)
             _pressures(panels[2], [row for row in teeth if (row.speed_rpm, row.friction) == case], colour, banded)
         for axes, quantity in zip(panels, ("transmission error [µm]", "mesh force [N]", "peak pressure [MPa]")):
             axes.set_ylabel(quantity)

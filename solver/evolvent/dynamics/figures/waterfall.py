@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.oscillator.response import HIGHEST_ORDER, Response
-from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
-from evolvent.dynamics.pair_model import Drive
-from evolvent.dynamics.results.response import jumps, speed_of
+from evolvent.dynamics.oscillator.response import HIGHEST_ORDER
+from evolvent.dynamics.results.response import DriveSummary
+from evolvent.dynamics.results.spectrum import SpectrumRow
 from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, sheet, styled
 from evolvent_meshes.arrays import Floats
 
@@ -23,24 +24,25 @@ WHOLE, PART = 5.5, 3.0
 """Widths of lines of whole orders and of those between them [pt]."""
 
 
-def waterfall_picture(drive: Drive, swept: SpeedSweep, found: list[Response]) -> bytes:
+def waterfall_picture(known: DriveSummary, rows: Sequence[SpectrumRow]) -> bytes:
     """PNG of `waterfall_figure`."""
     with styled():
-        return png(waterfall_figure(drive, swept, found))
+        return png(waterfall_figure(known, rows))
 
 
-def waterfall_figure(drive: Drive, swept: SpeedSweep, found: list[Response]) -> Figure:
-    """found: running up, at each speed."""
-    speeds = np.array([speed_of(drive, float(period)) for period in swept.periods])
-    natural, load = 1e-3 * drive.natural_speed * drive.teeth / 60.0, drive.model.load
-    mesh = 1e-3 / swept.periods
+def waterfall_figure(known: DriveSummary, rows: Sequence[SpectrumRow]) -> Figure:
+    """Running up."""
+    lines = [row for row in rows if row.way == "up"]
+    speeds = np.array(list(dict.fromkeys(row.speed_rpm for row in lines)))
+    natural, load = 1e-3 * known.mesh_frequency_Hz, known.static_force_N
+    mesh = natural * speeds / known.natural_speed_rpm
     top = min(HIGHEST_ORDER * float(mesh[-1]), max(BEYOND_NATURAL * natural, 2.2 * float(mesh[-1])))
-    figure = sheet("Spectrum of the mesh force while running up", _strongest(speeds, found, load), (11.0, 6.6))
+    figure = sheet("Spectrum of the mesh force while running up", _strongest(lines, load), (11.0, 6.6))
     axes = figure.subplots()
-    drawn = _draw_lines(axes, speeds, mesh, found, load)
+    drawn = _draw_lines(axes, speeds, lines, load)
     axes.axhline(natural, color=INK, lw=1.0, ls="--", zorder=1)
     axes.text(speeds[-1], natural, "natural frequency ", va="bottom", ha="right", fontsize=9, color=INK)
-    for speed in jumps(drive, swept.up):
+    for speed in known.jumps_up_rpm:
         axes.axvline(speed, color=FAINT, lw=1.0, ls=":", zorder=1)
     axes.set_xlim(speeds[0], speeds[-1])
     axes.set_ylim(0.0, top)
@@ -57,30 +59,27 @@ def waterfall_figure(drive: Drive, swept: SpeedSweep, found: list[Response]) -> 
     return figure
 
 
-def _strongest(speeds: Floats, found: list[Response], load: float) -> str:
+def _strongest(lines: Sequence[SpectrumRow], load: float) -> str:
     """The line with the largest amplitude."""
-    i = int(np.argmax([each.spectrum.force.max() for each in found]))
-    lines = found[i].spectrum
-    k = int(np.argmax(lines.force))
+    row = max(lines, key=lambda row: row.force_N)
     return (
-        f"Strongest line: {lines.force[k]:.0f} N, {100.0 * lines.force[k] / load:.0f} % of the static force, order "
-        f"{lines.orders[k]:.3g} at {speeds[i]:.0f} r/min."
+        f"Strongest line: {row.force_N:.0f} N, {100.0 * row.force_N / load:.0f} % of the static force, order "
+        f"{row.order:.3g} at {row.speed_rpm:.0f} r/min."
     )
 
 
-def _draw_lines(axes: Axes, speeds: Floats, mesh: Floats, found: list[Response], load: float) -> LineCollection:
-    """Each line as a piece along its order, halfway to the speeds beside; the strongest on top. mesh: frequencies (n,)
-    [kHz]."""
+def _draw_lines(axes: Axes, speeds: Floats, lines: Sequence[SpectrumRow], load: float) -> LineCollection:
+    """Each line as a piece along its order, halfway to the speeds (n,) beside; the strongest on top."""
     middle = 0.5 * (speeds[1:] + speeds[:-1])
     ends = np.column_stack([np.append(speeds[0], middle), np.append(middle, speeds[-1])])
+    reach = dict(zip(speeds.tolist(), ends))
     pieces, sizes, widths = [], [], []
-    for end, speed, frequency, each in zip(ends, speeds, mesh, found):
-        lines = each.spectrum
-        for order, force in zip(lines.orders, lines.force):
-            if force >= LOWEST * load:
-                pieces.append(np.column_stack([end, order * frequency * end / speed]))
-                sizes.append(float(force))
-                widths.append(WHOLE if order == round(order) else PART)
+    for row in lines:
+        if row.force_N >= LOWEST * load:
+            end = reach[row.speed_rpm]
+            pieces.append(np.column_stack([end, 1e-3 * row.frequency_Hz * end / row.speed_rpm]))
+            sizes.append(row.force_N)
+            widths.append(WHOLE if row.order == round(row.order) else PART)
     rank = np.argsort(sizes)
     drawn = LineCollection(
         [pieces[i] for i in rank], array=np.array(sizes)[rank], cmap=PRESSURE_MAP, linewidths=np.array(widths)[rank],

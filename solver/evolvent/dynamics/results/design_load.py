@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.results.curves import LOADED, CoarseExcitation, pitch_curves
-from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.tables.table import Record
 
-EXCITATION_FACTS = "excitation.json"
 LOADS = 400
 """Loads among which the least peak-to-peak value is sought before it is refined."""
 
@@ -43,6 +41,9 @@ class ExcitationFacts:
     """Heaviest one."""
 
 
+EXCITATION_FACTS = Record("excitation.json", ExcitationFacts)
+
+
 def excitation_facts(
     title: str, level: str, excitation: MeshExcitation, radius: float, companion: CoarseExcitation
 ) -> ExcitationFacts:
@@ -50,12 +51,11 @@ def excitation_facts(
     forces = excitation.loaded.forces
     torques = tuple(float(1e-3 * radius * force) for force in forces)
     count = len(excitation.unloaded_error)
-    return ExcitationFacts(title, level, count, torques, *_design(excitation, radius, companion))
-
-
-def write_excitation_facts(folder: RunFolder, facts: ExcitationFacts) -> None:
-    """Writes excitation.json. Raises WriteError, FolderError."""
-    folder.write_text(EXCITATION_FACTS, json.dumps(asdict(facts), indent=1, ensure_ascii=False) + "\n")
+    torque, size, error, lightest, heaviest = _design(excitation, radius, companion)
+    return ExcitationFacts(
+        title=title, mesh_level=level, positions=count, torques_Nm=torques, design_torque_Nm=torque,
+        design_peak_to_peak_um=size, design_peak_to_peak_um_error=error, design_from_Nm=lightest, design_to_Nm=heaviest,
+    )
 
 
 def _design(

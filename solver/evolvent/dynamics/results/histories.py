@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,11 +13,8 @@ from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import History
 from evolvent.dynamics.pair_model import Drive
 from evolvent.dynamics.results.response import UM, speed_of
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.table import Table
 from evolvent_meshes.arrays import Floats
-
-HISTORIES = "histories.csv"
 
 
 @dataclass(frozen=True)
@@ -43,6 +40,11 @@ class HistoryRow:
     """Of the mesh, damping included; where contact begins or ends it jumps between two lines."""
     contact: int
     """1 where the loaded flanks touch, −1 where the back flanks do, 0 where none do."""
+    displacement_um: float
+    """Of the mass on the mesh, whose rate velocity_mm_per_s is: that of transmission_error_um with rigid bodies."""
+
+
+HISTORIES = Table("histories.csv", HistoryRow)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,14 +91,10 @@ def motions(drive: Drive, swept: SpeedSweep, speeds: Sequence[float]) -> list[Mo
 def history_rows(found: Iterable[Motion]) -> Iterator[HistoryRow]:
     """One motion after the other."""
     for motion in found:
-        columns = (motion.over(name) for name in ("transmission_error", "error", "velocity", "force", "side"))
-        for phase, s, e, velocity, force, side in zip(motion.phases, *columns):
+        names = "transmission_error", "error", "velocity", "force", "side", "displacement"
+        for phase, s, e, velocity, force, side, displacement in zip(motion.phases, *map(motion.over, names)):
             yield HistoryRow(
-                motion.speed, motion.way, float(phase), 1e3 * float(phase) * motion.period, UM * float(s),
-                UM * float(s - e), float(velocity), float(force), int(side),
+                speed_rpm=motion.speed, way=motion.way, phase=float(phase), time_ms=1e3 * float(phase) * motion.period,
+                transmission_error_um=UM * float(s), elastic_um=UM * float(s - e), velocity_mm_per_s=float(velocity),
+                force_N=float(force), contact=int(side), displacement_um=UM * float(displacement),
             )
-
-
-def write_histories(folder: RunFolder, rows: Iterable[HistoryRow]) -> None:
-    """Writes histories.csv. Raises WriteError, FolderError."""
-    folder.write_text(HISTORIES, csv_text([asdict(row) for row in rows]))

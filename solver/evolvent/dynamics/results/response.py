@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,11 +12,8 @@ from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
 from evolvent.dynamics.results.response_errors import VibrationErrors
 from evolvent.gears.problem.iso_dynamic_factor import MethodB
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text, without_nan
-from evolvent_meshes.arrays import Floats
+from evolvent.results.tables.table import Record, Table
 
-RESPONSE, BRANCH, DYNAMICS = "response.csv", "branch.csv", "dynamics.json"
 UM = 1e3  # µm per mm
 
 
@@ -170,6 +166,16 @@ class DriveSummary:
     """n_E1 of ISO 6336-1:2006, clause 6: of the pinion, by that stiffness and the mass above."""
     iso_relief_term: float
     """B_k of the same: what tip relief leaves of the deflection, 1 without one."""
+    iso_main_resonance_rpm: tuple[float, float]
+    """Speeds of the pinion between which that standard has its main resonance."""
+    iso_base_pitch_deviation_um: float | None
+    """f_pb, as in the scene; null where it is not known, like the next one."""
+    iso_profile_deviation_um: float | None
+    """f_fα, likewise."""
+
+
+RESPONSE, BRANCH = Table("response.csv", ResponseRow), Table("branch.csv", BranchRow)
+DYNAMICS = Record("dynamics.json", DriveSummary)
 
 
 def speed_of(drive: Drive, period: float) -> float:
@@ -197,17 +203,16 @@ def response_rows(
         for period, run, each, amplitude_error, factor_error in zip(swept.periods, runs, found[way], *bars):
             speed = speed_of(drive, float(period))
             yield ResponseRow(
-                speed, way, run.repeats, run.jumped, UM * each.equivalent_amplitude, float(amplitude_error),
-                UM * each.elastic_equivalent_amplitude, *_five(UM * each.total), *_five(each.force),
-                each.largest_force, each.smallest_force, each.largest_force / drive.model.load, float(factor_error),
-                iso.factor(speed), each.apart, each.behind,
+                speed_rpm=speed, way=way, repeats=run.repeats, jumped=run.jumped,
+                equivalent_amplitude_um=UM * each.equivalent_amplitude,
+                equivalent_amplitude_um_error=float(amplitude_error),
+                elastic_equivalent_amplitude_um=UM * each.elastic_equivalent_amplitude,
+                **{f"harmonic_{r}_um": UM * float(size) for r, size in enumerate(each.total, 1)},
+                **{f"force_harmonic_{r}_N": float(size) for r, size in enumerate(each.force, 1)},
+                largest_force_N=each.largest_force, smallest_force_N=each.smallest_force,
+                dynamic_factor=each.largest_force / drive.model.load, dynamic_factor_error=float(factor_error),
+                dynamic_factor_iso=iso.factor(speed), separated_share=each.apart, back_contact_share=each.behind,
             )
-
-
-def _five(amplitudes: Floats) -> tuple[float, float, float, float, float]:
-    """Of the mesh harmonics."""
-    first, second, third, fourth, fifth = (float(value) for value in amplitudes)
-    return first, second, third, fourth, fifth
 
 
 def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
@@ -216,7 +221,10 @@ def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
     for i, (state, stable) in enumerate(zip(swept.branch.points, swept.branch.stable)):
         size = response(drive.model, state.period, state.state).equivalent_amplitude
         fold, connected = i in swept.branch.folds, i > 0 and i - 1 not in gaps
-        yield BranchRow(speed_of(drive, state.period), UM * size, bool(stable), fold, connected)
+        yield BranchRow(
+            speed_rpm=speed_of(drive, state.period), equivalent_amplitude_um=UM * size, stable=bool(stable), fold=fold,
+            connected=connected,
+        )
 
 
 def jumps(drive: Drive, runs: Iterable[Running]) -> tuple[float, ...]:
@@ -231,32 +239,32 @@ def summary(
     """largest: mesh force of all speeds; heaviest: of the force surface's torques [N]."""
     pinion, wheel = settings.inertias
     folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
+    begin, end = iso.main_resonance
     return DriveSummary(
-        1e3 * drive.equivalent_mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness,
-        1e-3 * errors.mean_stiffness, drive.natural_speed, errors.natural_speed,
-        "rigid" if settings.bodies is None else "elastic", drive.rigid_natural_speed, 1e3 * drive.model.mass,
-        1e-3 * drive.moving_stiffness, drive.body_frequency if settings.bodies is not None else None, drive.model.load,
-        drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
-        settings.damped_apart, settings.ground_damping_ratio, drive.natural_speed * drive.teeth / 60.0, folds,
-        jumps(drive, swept.up), errors.jumps["up"],
-        jumps(drive, swept.down[::-1]), errors.jumps["down"],
-        largest / heaviest if settings.mesh == "force_surface" else None, iso.single_stiffness, iso.mesh_stiffness,
-        iso.resonance_speed, iso.relief_term,
+        equivalent_mass_kg=1e3 * drive.equivalent_mass, pinion_inertia_kg_m2=1e-3 * pinion,
+        wheel_inertia_kg_m2=1e-3 * wheel, mean_stiffness_N_per_um=1e-3 * drive.mean_stiffness,
+        mean_stiffness_N_per_um_error=1e-3 * errors.mean_stiffness, natural_speed_rpm=drive.natural_speed,
+        natural_speed_rpm_error=errors.natural_speed, bodies="rigid" if settings.bodies is None else "elastic",
+        rigid_natural_speed_rpm=drive.rigid_natural_speed, moving_mass_kg=1e3 * drive.model.mass,
+        moving_stiffness_N_per_um=1e-3 * drive.moving_stiffness,
+        body_frequency_Hz=drive.body_frequency if settings.bodies is not None else None,
+        static_force_N=drive.model.load, damping_N_s_per_mm=drive.model.damping, backlash_um=UM * settings.backlash,
+        mesh=settings.mesh, damping_ratio=settings.damping_ratio, damped_apart=settings.damped_apart,
+        ground_damping_ratio=settings.ground_damping_ratio, mesh_frequency_Hz=drive.natural_speed * drive.teeth / 60.0,
+        folds_rpm=folds, jumps_up_rpm=jumps(drive, swept.up), jumps_up_rpm_error=errors.jumps["up"],
+        jumps_down_rpm=jumps(drive, swept.down[::-1]), jumps_down_rpm_error=errors.jumps["down"],
+        heaviest_torque_share=largest / heaviest if settings.mesh == "force_surface" else None,
+        iso_single_stiffness_N_per_mm_um=iso.single_stiffness, iso_mesh_stiffness_N_per_mm_um=iso.mesh_stiffness,
+        iso_resonance_speed_rpm=iso.resonance_speed, iso_relief_term=iso.relief_term,
+        iso_main_resonance_rpm=(begin * iso.resonance_speed, end * iso.resonance_speed),
+        iso_base_pitch_deviation_um=iso.accuracy.base_pitch_deviation,
+        iso_profile_deviation_um=iso.accuracy.profile_deviation,
     )
 
 
 def _different(speeds: Iterable[float]) -> tuple[float, ...]:
     """Each once, to six digits: pieces of the branch may be followed over the same fold."""
     return tuple({float(f"{speed:.6g}"): speed for speed in speeds}.values())
-
-
-def write_response(
-    folder: RunFolder, rows: Iterable[ResponseRow], branch: Iterable[BranchRow], known: DriveSummary
-) -> None:
-    """Writes response.csv, branch.csv and dynamics.json. Raises WriteError, FolderError."""
-    folder.write_text(RESPONSE, csv_text([asdict(row) for row in rows]))
-    folder.write_text(BRANCH, csv_text([asdict(row) for row in branch]))
-    folder.write_text(DYNAMICS, json.dumps(without_nan(asdict(known)), indent=1, ensure_ascii=False) + "\n")
 
 
 def largest_force(found: dict[str, list[Response]]) -> float:

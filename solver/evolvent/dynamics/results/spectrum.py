@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.pair_model import Drive
 from evolvent.dynamics.results.response import UM, speed_of
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
-
-SPECTRUM = "spectrum.csv"
+from evolvent.results.tables.table import Table
 
 
 @dataclass(frozen=True)
@@ -34,15 +31,16 @@ class SpectrumRow:
     """Amplitude of s, the dynamic transmission error with the unloaded one in it."""
 
 
+SPECTRUM = Table("spectrum.csv", SpectrumRow)
+
+
 def spectrum_rows(drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]]) -> Iterator[SpectrumRow]:
     """Up, then down, at ascending speeds, each with ascending orders."""
     for way, responses in found.items():
         for period, each in zip(swept.periods, responses, strict=True):
             speed, lines = speed_of(drive, float(period)), each.spectrum
             for order, force, total in zip(lines.orders, lines.force, lines.total):
-                yield SpectrumRow(speed, way, float(order), float(order / period), float(force), UM * float(total))
-
-
-def write_spectrum(folder: RunFolder, rows: Iterable[SpectrumRow]) -> None:
-    """Writes spectrum.csv. Raises WriteError, FolderError."""
-    folder.write_text(SPECTRUM, csv_text([asdict(row) for row in rows]))
+                yield SpectrumRow(
+                    speed_rpm=speed, way=way, order=float(order), frequency_Hz=float(order / period),
+                    force_N=float(force), transmission_error_um=UM * float(total),
+                )

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,10 +18,8 @@ from evolvent.dynamics.results.curves import (
     pitch_curves,
     unloaded_curve,
 )
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.table import Table
 
-EXCITATION, HARMONICS = "excitation.csv", "harmonics.csv"
 NO_TORQUE = 0.0
 """Of the unloaded transmission error [N·m]."""
 
@@ -78,15 +76,25 @@ class HarmonicRow:
     """ψ."""
 
 
+EXCITATION, HARMONICS = Table("excitation.csv", ExcitationRow), Table("harmonics.csv", HarmonicRow)
+
+
 def excitation_rows(
     excitation: MeshExcitation, radius: float, companion: CoarseExcitation = NO_COMPANION
 ) -> list[ExcitationRow]:
     """The lightest torque first. radius: base radius of the gear with the torque [mm]."""
     loaded, unloaded, rows = excitation.loaded, unloaded_curve(excitation).values, []
     for force, curves in zip(loaded.forces, pitch_curves(excitation, companion)):
-        columns = [column for name in (LOADED, TANGENT, SECANT) for column in (curves[name].values, curves[name].bars)]
-        for angle, *values in zip(np.degrees(loaded.angles), unloaded, *columns):
-            rows.append(ExcitationRow(float(angle), 1e-3 * float(force) * radius, float(force), *map(float, values)))
+        error, tangent, secant = curves[LOADED], curves[TANGENT], curves[SECANT]
+        of_error, of_tangent, of_secant = error.bars, tangent.bars, secant.bars
+        for k, angle in enumerate(np.degrees(loaded.angles)):
+            rows.append(ExcitationRow(
+                pinion_angle_deg=float(angle), torque_Nm=1e-3 * float(force) * radius, mesh_force_N=float(force),
+                unloaded_transmission_error_um=float(unloaded[k]), transmission_error_um=float(error.values[k]),
+                transmission_error_um_error=float(of_error[k]), tangent_stiffness_N_per_um=float(tangent.values[k]),
+                tangent_stiffness_N_per_um_error=float(of_tangent[k]),
+                secant_stiffness_N_per_um=float(secant.values[k]), secant_stiffness_N_per_um_error=float(of_secant[k]),
+            ))
     return rows
 
 
@@ -107,12 +115,7 @@ def _harmonics(torque: float, curve: PitchCurve) -> Iterator[HarmonicRow]:
     parts = *curve.harmonics, curve.amplitude_errors
     for r, (amplitude, phase, error) in enumerate(zip(*parts), 1):
         yield HarmonicRow(
-            curve.quantity, torque, mean, curve.mean_error, size, curve.peak_to_peak_error, r, float(amplitude),
-            float(error), float(np.degrees(phase)),
+            quantity=curve.quantity, torque_Nm=torque, mean=mean, mean_error=curve.mean_error, peak_to_peak=size,
+            peak_to_peak_error=curve.peak_to_peak_error, harmonic=r, amplitude=float(amplitude),
+            amplitude_error=float(error), phase_deg=float(np.degrees(phase)),
         )
-
-
-def write_tables(folder: RunFolder, positions: Sequence[ExcitationRow], harmonics: Sequence[HarmonicRow]) -> None:
-    """Writes excitation.csv and harmonics.csv. Raises WriteError, FolderError."""
-    folder.write_text(EXCITATION, csv_text([asdict(row) for row in positions]))
-    folder.write_text(HARMONICS, csv_text([asdict(row) for row in harmonics]))

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.pair_model import Drive
 from evolvent.dynamics.results.response import UM, responses, speed_of
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
-
-TORQUE_MAP = "torque_map.csv"
+from evolvent.results.tables.table import Table
 
 
 @dataclass(frozen=True)
@@ -42,18 +39,18 @@ class MapRow:
     """Share of the time in which the back flanks touch."""
 
 
+TORQUE_MAP = Table("torque_map.csv", MapRow)
+
+
 def map_rows(torque: float, drive: Drive, swept: SpeedSweep) -> Iterator[MapRow]:
     """Under one torque [N·m]: up, then down, at ascending speeds."""
     found = responses(drive, swept)
     for way, runs in (("up", swept.up), ("down", swept.down)):
         for period, run, each in zip(swept.periods, runs, found[way]):
             yield MapRow(
-                torque, drive.natural_speed, speed_of(drive, float(period)), way, run.repeats,
-                UM * each.equivalent_amplitude, UM * each.elastic_equivalent_amplitude, each.largest_force,
-                each.largest_force / drive.model.load, each.apart, each.behind,
+                torque_Nm=torque, natural_speed_rpm=drive.natural_speed, speed_rpm=speed_of(drive, float(period)),
+                way=way, repeats=run.repeats, equivalent_amplitude_um=UM * each.equivalent_amplitude,
+                elastic_equivalent_amplitude_um=UM * each.elastic_equivalent_amplitude,
+                largest_force_N=each.largest_force, dynamic_factor=each.largest_force / drive.model.load,
+                separated_share=each.apart, back_contact_share=each.behind,
             )
-
-
-def write_torque_map(folder: RunFolder, rows: Iterable[MapRow]) -> None:
-    """Writes torque_map.csv. Raises WriteError, FolderError."""
-    folder.write_text(TORQUE_MAP, csv_text([asdict(row) for row in rows]))

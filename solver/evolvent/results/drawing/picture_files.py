@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent_meshes.files import WriteError
 
@@ -32,12 +33,12 @@ class Drawn:
 
 def draw(pictures: Iterable[Picture], folder: RunFolder) -> Drawn:
     """Draws pictures into OUT/pictures. Raises WriteError where a file cannot be written, as the next could not be
-    either."""
+    either, and ArchiveError where a table that a picture is drawn from cannot be read."""
     written, failures = [], []
     for picture in pictures:
         try:
             written.append(folder.write(f"pictures/{picture.name}", picture.draw()))
-        except WriteError:
+        except (ArchiveError, WriteError):
             raise
         except Exception as error:  # whatever matplotlib, pyvista or a graphics driver may raise
             reason = str(error) or type(error).__name__

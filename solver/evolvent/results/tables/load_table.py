@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
 from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.table import Table
 
-LOADS = "loads.csv"
 ERROR = "_error"
 """Behind the name of a figure: its estimated error."""
 
@@ -69,6 +68,11 @@ class LoadRow:
     """Number of warnings in the run's summary.json: read them before the figures are compared."""
 
 
+LOADS = Table("loads.csv", LoadRow)
+RUNS = "load_{}_percent"
+"""Name of the folder of a run below that of the table, with its part of the torque."""
+
+
 @dataclass(frozen=True)
 class LoadResult:
     """A run under one torque at one friction coefficient."""
@@ -81,7 +85,21 @@ class LoadResult:
     """At each position [µm]."""
 
 
-def load_results(folders: Sequence[Path]) -> list[LoadResult]:
+@dataclass(frozen=True)
+class LoadRuns:
+    """The runs that a table of loads is of."""
+
+    name: str = LOADS.name
+    """Name of the table's file."""
+
+    def read(self, folder: Path) -> list[LoadResult]:
+        """From their folders below that of the table, the lightest torque first. Raises ArchiveError, OSError."""
+        torques = [row.torque_Nm for row in LOADS.read(folder)]
+        every = load_results(path for path in folder.glob(RUNS.format("*")) if (path / "summary.json").exists())
+        return [each for each in every if any(math.isclose(each.row.torque_Nm, torque) for torque in torques)]
+
+
+def load_results(folders: Iterable[Path]) -> list[LoadResult]:
     """Of finished runs, from their summary.json, the lightest torque first. Raises OSError."""
     read = [json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in folders]
     read.sort(key=lambda summary: float(summary["scene"]["load"]["torque_Nm"]))
@@ -111,8 +129,3 @@ def _result(summary: Mapping[str, Any], row: Mapping[str, Any]) -> LoadResult:
 
 def _number(value: float | None) -> float:
     return float("nan") if value is None else value
-
-
-def write_loads(folder: RunFolder, results: Sequence[LoadResult]) -> None:
-    """Writes the table. Raises WriteError, FolderError."""
-    folder.write_text(LOADS, csv_text([asdict(each.row) for each in results]))

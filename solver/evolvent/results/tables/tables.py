@@ -6,11 +6,6 @@ incomplete table.
 
 from __future__ import annotations
 
-import csv
-import io
-import json
-import math
-from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
 from evolvent.results.archive.run_folder import RunFolder
@@ -18,9 +13,7 @@ from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows, position_rows
 from evolvent.results.tables.run_warnings import warnings_of
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, RunFacts, Summary
-
-FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r", "'")
-"""How cells begin that spreadsheets take for formulas, and the apostrophe that says they are none."""
+from evolvent.results.tables.table import csv_text, json_text
 
 
 def summary(run: RunData, facts: RunFacts) -> Summary:
@@ -52,8 +45,7 @@ def write_tables(folder: RunFolder, content: Summary) -> None:
 def write_summary(folder: RunFolder, content: Summary) -> None:
     """Writes summary.json. Raises WriteError, FolderError."""
     values = {"schema_version": content.schema_version, **asdict(content)}
-    text = json.dumps(without_nan(values), ensure_ascii=False, indent=1, allow_nan=False)
-    folder.write_text("summary.json", text + "\n")
+    folder.write_text("summary.json", json_text(values))
 
 
 def _flat(row: dict[str, object]) -> dict[str, object]:
@@ -61,43 +53,3 @@ def _flat(row: dict[str, object]) -> dict[str, object]:
     teeth = row.pop("teeth")
     assert isinstance(teeth, (list, tuple))
     return row | {"teeth_in_contact": len(teeth)}
-
-
-def csv_text(rows: Sequence[Mapping[str, object]]) -> str:
-    """Text of a CSV file. rows: at least one, all with the same keys."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, fieldnames=list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({key: _cell(value) for key, value in row.items()} for row in rows)
-    return stream.getvalue()
-
-
-def _cell(value: object) -> object:
-    """A number with nine digits, enough for reading and for comparing two runs; behind an apostrophe a text that a
-    spreadsheet would compute, or that begins with an apostrophe itself."""
-    if isinstance(value, float):
-        return f"{value:.9g}"
-    is_formula = isinstance(value, str) and value.startswith(FORMULA_STARTS) and not _is_number(value)
-    return f"'{value}" if is_formula else value
-
-
-def cell_text(cell: str) -> str:
-    """The text of a cell that `csv_text` has written."""
-    return cell[1:] if cell.startswith("'") and cell[1:].startswith(FORMULA_STARTS) else cell
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def without_nan(value: object) -> object:
-    """The value with null in place of numbers that are not finite, which JSON does not have."""
-    if isinstance(value, Mapping):
-        return {str(key): without_nan(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [without_nan(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -14,10 +14,11 @@ from mpi4py import MPI
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, certify_torques, mesh_of, solved_figures
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.figures.all import EXCITATION_PICTURE
 from evolvent.dynamics.of_scene import check_positions
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
-from evolvent.dynamics.results.design_load import excitation_facts, write_excitation_facts
-from evolvent.dynamics.results.tables import EXCITATION, excitation_rows, harmonic_rows, write_tables
+from evolvent.dynamics.results.design_load import EXCITATION_FACTS, excitation_facts
+from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import GearModel, Mesher, Preparer, prepare_model
@@ -26,11 +27,12 @@ from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.solution.certified_pitch import balanced
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.results.drawing.picture_files import draw
+from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.run.companion import attempted
 from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KEPT_DEFLECTED, KeptPositions, kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques
-from evolvent.run.dynamics.written_files import EXCITATION_PICTURE, OF_DYNAMICS, OF_EXCITATION
+from evolvent.run.dynamics.written_files import OF_DYNAMICS, OF_EXCITATION
 from evolvent.run.folder_checks import require_unfinished, writing_to
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.skips import wanted_output
@@ -75,7 +77,7 @@ def writing_results(
     dolfinx_compat.silence_logs()
     every = *written, KEPT, KEPT_COARSE, *KEPT_DEFLECTED
     return writing_to(
-        out, comm, lambda: require_unfinished(out, every, (KEPT, EXCITATION), "positions", resume, overwrite)
+        out, comm, lambda: require_unfinished(out, every, (KEPT, EXCITATION.name), "positions", resume, overwrite)
     )
 
 
@@ -161,16 +163,10 @@ def write_excitation(
     """Writes tables and, where it is wanted, the picture; returns a sentence where that could not be drawn or error
     bars not be estimated. Raises WriteError, FolderError."""
     scene, radius = loads.scene, loads.base_radius
-    facts = excitation_facts(scene.title, scene.mesh.level, excitation, radius, companion)
-    tables = excitation_rows(excitation, radius, companion), harmonic_rows(excitation, radius, companion)
-    write_tables(folder, *tables)
-    write_excitation_facts(folder, facts)
-
-    def drawn() -> bytes:
-        from evolvent.dynamics.figures.excitation import excitation_picture  # matplotlib takes a second to import
-
-        return excitation_picture(excitation, facts, companion)
-
-    failures = draw([Picture(EXCITATION_PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures
+    EXCITATION.write(folder, excitation_rows(excitation, radius, companion))
+    HARMONICS.write(folder, harmonic_rows(excitation, radius, companion))
+    EXCITATION_FACTS.write(folder, excitation_facts(scene.title, scene.mesh.level, excitation, radius, companion))
+    pictures = [EXCITATION_PICTURE] if wanted_output(scene).pictures else []
+    failures = draw(from_tables(pictures, folder.out), folder).failures
     mended = excitation.loaded.deflected and not loads.problem.options.deflected_flanks
     return [*failures, *filter(None, [ON_DEFLECTED if mended else "", companion.failure])]

@@ -10,9 +10,7 @@ from evolvent.dynamics.oscillator.steady_state import NoSteadyState
 from evolvent.dynamics.pair_model import DriveSettings, drive
 from evolvent.dynamics.results.torque_map import MapRow, map_rows
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.results.drawing.picture_files import Picture
 from evolvent.run.dynamics.speeds import sweep_at
-from evolvent.run.dynamics.written_files import MAP_PICTURE
 from evolvent_meshes.arrays import Floats
 
 
@@ -53,17 +51,6 @@ def torque_map(
     if settings.mesh == "force_surface":
         warnings += _beyond(rows, float(excitation.loaded.forces[-1]))
     return TorqueMap(tuple(rows), tuple(warnings))
-
-
-def map_pictures(found: TorqueMap) -> list[Picture]:
-    """Of what was computed."""
-
-    def drawn() -> bytes:
-        from evolvent.dynamics.figures.torque_map import torque_map_picture  # matplotlib takes a second to import
-
-        return torque_map_picture(found.rows)
-
-    return [Picture(MAP_PICTURE, drawn)] if found.rows else []
 
 
 def _beyond(rows: Sequence[MapRow], heaviest: float) -> list[str]:

@@ -2,40 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.figures.all import VIBRATION_PICTURES
 from evolvent.dynamics.of_scene import check_backlash, check_positions, drive_settings
-from evolvent.dynamics.oscillator.response import MESHES, Response
+from evolvent.dynamics.oscillator.response import MESHES
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.dynamics.results.curves import CoarseExcitation
-from evolvent.dynamics.results.histories import Motion, history_rows, motions, write_histories
+from evolvent.dynamics.results.histories import HISTORIES, history_rows, motions
 from evolvent.dynamics.results.response import (
-    BranchRow,
+    BRANCH,
+    DYNAMICS,
+    RESPONSE,
     DriveSummary,
     branch_rows,
     largest_force,
     response_rows,
     speed_of,
     summary,
-    write_response,
 )
-from evolvent.dynamics.results.response_errors import VibrationErrors
-from evolvent.dynamics.results.spectrum import spectrum_rows, write_spectrum
-from evolvent.dynamics.results.torque_map import write_torque_map
+from evolvent.dynamics.results.spectrum import SPECTRUM, spectrum_rows
+from evolvent.dynamics.results.torque_map import TORQUE_MAP
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, MethodB, method_b
 from evolvent.gears.problem.iso_stiffness import outside_range
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.results.drawing.picture_files import draw
+from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.run.dynamics.excitation import (
     companion_of,
     computed_excitation,
@@ -45,9 +46,9 @@ from evolvent.run.dynamics.excitation import (
 from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
 from evolvent.run.dynamics.speeds import WAYS, map_list, sweep_at, sweep_list
-from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
+from evolvent.run.dynamics.torque_map import TorqueMap, torque_map
 from evolvent.run.dynamics.vibration_errors import SWEEPS, errors_over_speed, vibration_of
-from evolvent.run.dynamics.written_files import OF_DYNAMICS, PORTRAITS, VIBRATION_PICTURE, WATERFALL
+from evolvent.run.dynamics.written_files import OF_DYNAMICS
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.run.start import with_bodies
 from evolvent.scene.scene import Scene
@@ -112,7 +113,7 @@ def _written(
     speeds = sweep_list(vibrating.natural_speed, section)
     progress.stage(SPEEDS, WAYS * len(speeds))
     swept = sweep_at(vibrating, speeds, progress.advance)
-    own, branch = vibration_of(vibrating, swept), list(branch_rows(vibrating, swept))
+    own = vibration_of(vibrating, swept)
     found = own.found
     if companion.excitation is not None:
         progress.stage(SPEEDS_AGAIN, SWEEPS * WAYS * len(speeds))
@@ -124,14 +125,14 @@ def _written(
     folder = RunFolder(out)
     folder.remove(OF_DYNAMICS)
     failures = write_excitation(folder, excitation, companion, loads)
-    write_response(folder, response_rows(vibrating, swept, found, iso, errors), branch, known)
-    write_spectrum(folder, spectrum_rows(vibrating, swept, found))
-    if moving:
-        write_histories(folder, history_rows(moving))
-    if over_torque.rows:
-        write_torque_map(folder, over_torque.rows)
-    pictures = [*_pictures(vibrating, swept, found, branch, moving, iso, errors), *map_pictures(over_torque)]
-    failures += draw(pictures if wanted_output(loads.scene).pictures else [], folder).failures
+    RESPONSE.write(folder, response_rows(vibrating, swept, found, iso, errors))
+    BRANCH.write(folder, branch_rows(vibrating, swept))
+    DYNAMICS.write(folder, known)
+    SPECTRUM.write(folder, spectrum_rows(vibrating, swept, found))
+    HISTORIES.write(folder, history_rows(moving))
+    TORQUE_MAP.write(folder, over_torque.rows)
+    pictures = VIBRATION_PICTURES if wanted_output(loads.scene).pictures else ()
+    failures += draw(from_tables(pictures, out), folder).failures
     said = *doubtful(loads.scene.planned_vibration()), *_warnings(vibrating, settings, known, swept)
     said = *said, *_not_followed(vibrating, swept), *_branch_warnings(swept)
     said = *said, *_not_repeating(vibrating, swept), *errors.said
@@ -148,38 +149,6 @@ def _over_torque(
         progress.stage(MAP, len(loads))
     speeds = map_list(vibrating.natural_speed, section)
     return torque_map(excitation, problem, settings, loads, speeds, progress.advance)
-
-
-def _pictures(
-    vibrating: Drive,
-    swept: SpeedSweep,
-    found: dict[str, list[Response]],
-    branch: Sequence[BranchRow],
-    moving: Sequence[Motion],
-    iso: MethodB,
-    errors: VibrationErrors,
-) -> Iterator[Picture]:
-    """Vibration over the speed, spectrum running up, and motions at speeds where any are wanted."""
-
-    def over_speed() -> bytes:
-        from evolvent.dynamics.figures.response import response_picture  # matplotlib takes a second
-
-        return response_picture(vibrating, swept, found, branch, iso, errors)
-
-    def waterfall() -> bytes:
-        from evolvent.dynamics.figures.waterfall import waterfall_picture
-
-        return waterfall_picture(vibrating, swept, found["up"])
-
-    def over_time() -> bytes:
-        from evolvent.dynamics.figures.histories import histories_picture
-
-        return histories_picture(moving, vibrating.model.load)
-
-    yield Picture(VIBRATION_PICTURE, over_speed)
-    yield Picture(WATERFALL, waterfall)
-    if moving:
-        yield Picture(PORTRAITS, over_time)
 
 
 def body_resonances(vibrating: Drive, fastest: float) -> list[str]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.strength.fatigue.criterion import BELOW, CONTACT_PRESSURE, DANG_VAN, MAXIMUM_SHEAR, NEAR_SURFACE, SURFACE
-from evolvent.strength.results.fatigue_rows import FATIGUE
+from evolvent.strength.results.fatigue_rows import FATIGUE, FatigueRow
 from evolvent_meshes.gears.member import Member
 
 SHOWN = (
@@ -28,16 +28,14 @@ NOTHING = (
     "nothing evaluated: wanted contact between the tip-edge zones, found none at these positions; take more of them "
     "(sweep.positions), or a pair with a longer path of contact"
 )
-Row = dict[str, str]
 
 
 def fatigue_lines(folder: Path) -> Iterator[str]:
     """The largest values on the pinion with their error bars, and their changes over the first friction coefficient at
     the points of the flank, in the median, from the folder's table; and which of them do not hold."""
-    with open(folder / FATIGUE, encoding="utf-8") as stream:
-        rows = [row for row in csv.DictReader(stream) if row["gear"] == Member.PINION.label]
-    known = {(row["friction"], row["criterion"], row["place"]): row for row in rows if _is_known(row["value"])}
-    frictions = list(dict.fromkeys(row["friction"] for row in rows))
+    rows = [row for row in FATIGUE.read(folder) if row.gear == Member.PINION.label]
+    known = {(row.friction, row.criterion, row.place): row for row in rows if not math.isnan(row.value)}
+    frictions = list(dict.fromkeys(row.friction for row in rows))
     for friction in frictions:
         changed = friction != frictions[0]
         shown = [
@@ -47,48 +45,43 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
         ]
         parts = [f"{_named(name, row, changed)} {_value(row, changed)}" for name, row in shown]
         found = [", ".join(parts), *_flags(shown, changed)] if parts else [NOTHING]
-        yield f"μ = {float(friction):g}: {'; '.join(found)}"
+        yield f"μ = {friction:g}: {'; '.join(found)}"
 
 
-def _with_flags(row: Row, first: Row | None) -> Row:
+def _with_flags(row: FatigueRow, first: FatigueRow | None) -> FatigueRow:
     """A row with the flags of the point that is printed: where it is that of the first coefficient, of its row."""
     if first is None or not _at_point(row, changed=True):
         return row
-    return row | {name: first[name] for name in ("at_zone_end", "near_friction_reversal")}
+    return replace(row, at_zone_end=first.at_zone_end, near_friction_reversal=first.near_friction_reversal)
 
 
-def _is_known(text: str) -> bool:
-    """Whether a number of the table is one."""
-    return not math.isnan(float(text))
-
-
-def _named(name: str, row: Row, changed: bool) -> str:
+def _named(name: str, row: FatigueRow, changed: bool) -> str:
     """With the depth, where a criterion has one. changed: see `_value`."""
-    if row["criterion"] == CONTACT_PRESSURE.name:
+    if row.criterion == CONTACT_PRESSURE.name:
         return name
-    depth = float(row["point_depth_um" if _at_point(row, changed) else "depth_um"])
-    return f"{name} " + ("at the surface" if row["place"] == SURFACE else f"{depth:.3g} µm deep")
+    depth = row.point_depth_um if _at_point(row, changed) else row.depth_um
+    return f"{name} " + ("at the surface" if row.place == SURFACE else f"{depth:.3g} µm deep")
 
 
-def _value(row: Row, changed: bool) -> str:
+def _value(row: FatigueRow, changed: bool) -> str:
     """With its error bar. changed: at the point of the flank where it is largest at the first coefficient, with its
     change there and in the median over points, where they are known."""
     at_point = _at_point(row, changed)
-    value = plus_minus(float(row["point_value" if at_point else "value"]), float(row["value_error"] or "nan"), 0)
-    there = [f"{float(row['change_percent']):+.1f} % at this point"] if at_point else []
-    known = changed and _is_known(row["change_at_points_percent"])
-    median = [f"{float(row['change_at_points_percent']):+.1f} % in the median"] if known else []
-    return f"{value} {row['unit']}" + (f" ({', '.join([*there, *median])})" if there or median else "")
+    value = plus_minus(row.point_value if at_point else row.value, row.value_error, 0)
+    there = [f"{row.change_percent:+.1f} % at this point"] if at_point else []
+    known = changed and not math.isnan(row.change_at_points_percent)
+    median = [f"{row.change_at_points_percent:+.1f} % in the median"] if known else []
+    return f"{value} {row.unit}" + (f" ({', '.join([*there, *median])})" if there or median else "")
 
 
-def _at_point(row: Row, changed: bool) -> bool:
+def _at_point(row: FatigueRow, changed: bool) -> bool:
     """Whether a row has a value at the point at which friction coefficients are compared, and that is to be printed."""
-    return changed and _is_known(row["change_percent"])
+    return changed and not math.isnan(row.change_percent)
 
 
-def _flags(shown: Sequence[tuple[str, Row]], changed: bool) -> Iterator[str]:
+def _flags(shown: Sequence[tuple[str, FatigueRow]], changed: bool) -> Iterator[str]:
     """Which values lie where they do not hold. changed: see `_value`."""
     for column, words in FLAGS.items():
-        flagged = [_named(name, row, changed) for name, row in shown if row[column] == str(True)]
+        flagged = [_named(name, row, changed) for name, row in shown if getattr(row, column)]
         if flagged:
             yield f"{words}: {'all of these' if len(flagged) == len(shown) else ', '.join(flagged)}"

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from mpi4py import MPI
 
@@ -16,11 +13,11 @@ from evolvent.gears.pressure.contact_cells import coarse_contact
 from evolvent.gears.solution.certified_pitch import certified_pitch
 from evolvent.results.archive.error_bar_data import EstimatedErrors
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.results.drawing.picture_files import draw
+from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.results.error_bars.estimation import estimated_errors
 from evolvent.results.mesh_facts import cells_across
 from evolvent.results.run_data import RunData
-from evolvent.results.tables.tables import csv_text
 from evolvent.run.coarse_run import as_run, solve_companion
 from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.pitch_run import pitch_of
@@ -32,15 +29,16 @@ from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.skips import wanted_output, with_deflected_flanks
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads, LoadedPosition
-from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS, facts_text, fatigue_facts, warnings_of
-from evolvent.strength.results.fatigue_rows import FATIGUE, FATIGUE_DEPTH, FATIGUE_LIFE, FATIGUE_MAP
-from evolvent.strength.results.fatigue_tables import depth_rows, fatigue_rows, life_rows, map_rows
+from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS, fatigue_facts, warnings_of
+from evolvent.strength.results.fatigue_rows import FATIGUE, FATIGUE_DEPTH, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_SECTION
+from evolvent.strength.results.fatigue_tables import depth_rows, fatigue_rows, life_rows, map_rows, section_rows
 from evolvent.strength.results.friction_fatigue import FrictionFatigue
+from evolvent.strength.results.pictures import FATIGUE_PICTURE, FATIGUE_SCENE
 
 AT_END = 1e-6
 """A zone that begins so near [mm] to the end of the path of contact is none."""
-PICTURE, SCENE = "fatigue.png", "fatigue.toml"
-WRITTEN = SCENE, FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH, FATIGUE_FACTS, f"pictures/{PICTURE}"
+TABLES = FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH, FATIGUE_SECTION, FATIGUE_FACTS
+WRITTEN = FATIGUE_SCENE.name, *(table.name for table in TABLES), f"pictures/{FATIGUE_PICTURE.name}"
 
 
 def run_fatigue(
@@ -57,7 +55,7 @@ def run_fatigue(
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
     dolfinx_compat.silence_logs()
-    checked = writing_to(out, comm, lambda: require_new(out, WRITTEN, FATIGUE, overwrite))
+    checked = writing_to(out, comm, lambda: require_new(out, WRITTEN, FATIGUE.name, overwrite))
     with checked, Progress(hidden=hidden) as progress:
         solved, run = _solved(scene, comm, progress, prepare)
         companion = None
@@ -133,23 +131,16 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
         fatigue_facts(run.pair, each, _positions(run, k), run.inner_path, _materials(run))
         for k, each in enumerate(found)
     ]
-
-    def drawn() -> bytes:
-        from evolvent.strength.results.fatigue_picture import fatigue_picture  # matplotlib takes a second to import
-
-        return fatigue_picture(run.scene.title, run.pair, found)
-
     folder = RunFolder(out)
     folder.remove(WRITTEN)
-    folder.write_text(SCENE, run.scene.resolved_toml())
-    tables: dict[str, Iterable[Any]] = {
-        FATIGUE: fatigue_rows(run.pair, found), FATIGUE_LIFE: life_rows(found, section.exponents),
-        FATIGUE_MAP: map_rows(run.pair, found), FATIGUE_DEPTH: depth_rows(run.pair, found),
-    }
-    for name, rows in tables.items():
-        if values := [asdict(row) for row in rows]:  # one coefficient alone has no lives to compare
-            folder.write_text(name, csv_text(values))
-    folder.write_text(FATIGUE_FACTS, facts_text(facts))
-    failures = draw([Picture(PICTURE, drawn)] if wanted_output(run.scene).pictures else [], folder).failures
+    folder.write_text(FATIGUE_SCENE.name, run.scene.resolved_toml())
+    FATIGUE.write(folder, fatigue_rows(run.pair, found))
+    FATIGUE_LIFE.write(folder, life_rows(found, section.exponents))
+    FATIGUE_MAP.write(folder, map_rows(run.pair, found))
+    FATIGUE_DEPTH.write(folder, depth_rows(run.pair, found))
+    FATIGUE_SECTION.write(folder, section_rows(run.pair, found))
+    FATIGUE_FACTS.write(folder, facts)
+    pictures = [FATIGUE_PICTURE] if wanted_output(run.scene).pictures else []
+    failures = draw(from_tables(pictures, out), folder).failures
     said = [*failures, *chart_warnings(run.scene), *coarse_contact(cells_across(run))]
     return [*said, *(sentence for pair in zip(facts, found) for sentence in warnings_of(*pair))]

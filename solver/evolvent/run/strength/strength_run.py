@@ -13,7 +13,8 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.results.drawing.picture_files import draw
+from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.run.companion import Attempt, attempted
 from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.progress import ERROR_BARS, OUTPUT, Progress
@@ -24,17 +25,16 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.skips import wanted_output, with_deflected_flanks
 from evolvent.strength.peak_positions import Roots
-from evolvent.strength.results.gauge_table import GAUGES, gauge_rows, write_gauges
+from evolvent.strength.results.gauge_table import GAUGES, gauge_rows
+from evolvent.strength.results.pictures import ROOT_STRESS_PICTURE, STRENGTH_SCENE
 from evolvent.strength.results.tables import (
     ROOT_STRESS,
     STRENGTH,
     FrictionRoots,
-    StrengthRow,
     formula_rows,
     formula_warnings,
     root_stress_rows,
     strength_rows,
-    write_strength,
 )
 from evolvent.strength.root_surface import compression_side, tension_side
 from evolvent.strength.standard.root_stress import RootLoad
@@ -42,10 +42,9 @@ from evolvent.strength.strain_gauges import Gauge, gauge_places
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
-PICTURE = "root_stress.png"
-SCENE = "strength.toml"
-"""The scene that was computed, with all its defaults: beside a run's scene.toml, which may have other values."""
-WRITTEN = SCENE, STRENGTH, ROOT_STRESS, GAUGES, f"pictures/{PICTURE}"
+WRITTEN = (
+    STRENGTH_SCENE.name, STRENGTH.name, ROOT_STRESS.name, GAUGES.name, f"pictures/{ROOT_STRESS_PICTURE.name}",
+)
 NO_DEEP_TEETH = 12
 """Tolerance class that is taken where the scene names none: Y_DT is 1."""
 
@@ -68,7 +67,7 @@ def run_strength(
     loads = _loads_of_standard(scene)
     on_first(comm, lambda: _check_gauges(scene))
     dolfinx_compat.silence_logs()
-    checked = writing_to(out, comm, lambda: require_new(out, WRITTEN, STRENGTH, overwrite))
+    checked = writing_to(out, comm, lambda: require_new(out, WRITTEN, STRENGTH.name, overwrite))
     with checked, Progress(hidden=hidden) as progress:
         fine_mesh, coarse_mesh = scene_root_meshes(scene)
         fine = pitch_roots(scene, fine_mesh, comm, progress, prepare=prepare)
@@ -127,22 +126,13 @@ def _written(scene: Scene, loads: Sequence[RootLoad], found: Sequence[FrictionRo
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
     section = scene.strength or StrengthSection()
     tolerance = section.tolerance_class or NO_DEEP_TEETH
-    rows: list[StrengthRow] = []
-    for load in loads:
-        rows += strength_rows(load, found, section.editions, tolerance)
+    rows = [row for load in loads for row in strength_rows(load, found, section.editions, tolerance)]
     strains = list(gauge_rows(_scene_gauges(scene), found, scene.materials()))
-
-    def drawn() -> bytes:
-        from evolvent.strength.results.root_stress_picture import (
-            root_stress_picture,  # matplotlib takes a second to import
-        )
-
-        return root_stress_picture(scene.title, found, rows)
-
     folder = RunFolder(out)
     folder.remove(WRITTEN)
-    folder.write_text(SCENE, scene.resolved_toml())
-    write_strength(folder, rows, list(root_stress_rows(found)))
-    if strains:
-        write_gauges(folder, strains)
-    return list(draw([Picture(PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures)
+    folder.write_text(STRENGTH_SCENE.name, scene.resolved_toml())
+    STRENGTH.write(folder, rows)
+    ROOT_STRESS.write(folder, root_stress_rows(found))
+    GAUGES.write(folder, strains)
+    pictures = [ROOT_STRESS_PICTURE] if wanted_output(scene).pictures else []
+    return list(draw(from_tables(pictures, out), folder).failures)

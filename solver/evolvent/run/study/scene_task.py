@@ -127,7 +127,7 @@ def _dynamics(task: SceneTask, prepare: Preparer) -> list[str]:
 
 
 def _strength(task: SceneTask, prepare: Preparer) -> list[str]:
-    return run_strength(task.scene, task.folder, (task.folder / STRENGTH).exists(), quiet=True, prepare=prepare)
+    return run_strength(task.scene, task.folder, (task.folder / STRENGTH.name).exists(), quiet=True, prepare=prepare)
 
 
 def _check(task: SceneTask, prepare: Preparer) -> list[str]:

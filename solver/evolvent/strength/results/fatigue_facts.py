@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.results.tables.tables import without_nan
+from evolvent.results.tables.table import Table
 from evolvent.strength.fatigue.criterion import VON_MISES
 from evolvent.strength.fatigue.fitted_tractions import shear_differences
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial
@@ -18,7 +17,6 @@ from evolvent.strength.results.friction_reversal import near_reversal
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
-FATIGUE_FACTS = "fatigue.json"
 Materials = tuple[FatigueMaterial, FatigueMaterial]
 
 
@@ -49,7 +47,11 @@ class FatigueFacts:
     pressures and friction as solved over that under the half-ellipse: the median difference."""
     fitted_shear_most_percent: float
     """Nine in ten of these differences are at most so large."""
+    pinion_pitch_diameter_mm: float
+    """Of the pinion's working pitch circle, at which the flanks do not slide."""
 
+
+FATIGUE_FACTS = Table("fatigue.json", FatigueFacts)
 
 SHAKEDOWN = 4.0
 """Contact pressure over shear yield stress up to which a line contact without friction shakes down elastically."""
@@ -71,11 +73,15 @@ def fatigue_facts(
     largest = float(peaks.max()) if known else np.nan
     mises = max(float(own.values[VON_MISES].max(initial=0.0)) for own in found.gears)
     return FatigueFacts(
-        found.friction, len(peaks), 100.0 * (1.0 - len(peaks) / loaded) if loaded else 0.0,
-        100.0 * float(reverses.mean()) if len(peaks) else 0.0, largest, largest * found.pressure_error,
-        None if σy is None else largest * np.sqrt(3.0) / σy, None if σy is None else mises / σy,
-        float(np.median(differences)) if known else np.nan,
-        float(np.quantile(np.abs(differences), 0.9)) if known else np.nan,
+        friction=found.friction, points=len(peaks),
+        left_out_percent=100.0 * (1.0 - len(peaks) / loaded) if loaded else 0.0,
+        near_reversal_percent=100.0 * float(reverses.mean()) if len(peaks) else 0.0, largest_pressure_MPa=largest,
+        largest_pressure_MPa_error=largest * found.pressure_error,
+        pressure_over_shear_yield=None if σy is None else largest * np.sqrt(3.0) / σy,
+        mises_over_yield=None if σy is None else mises / σy,
+        fitted_shear_median_percent=float(np.median(differences)) if known else np.nan,
+        fitted_shear_most_percent=float(np.quantile(np.abs(differences), 0.9)) if known else np.nan,
+        pinion_pitch_diameter_mm=float(pair.working_pitch_diameters[0]),
     )
 
 
@@ -95,8 +101,3 @@ def warnings_of(facts: FatigueFacts, found: FrictionFatigue) -> list[str]:
             "not elastic there, and Dang Van and Fatemi-Socie do not hold"
         )
     return said
-
-
-def facts_text(facts: Sequence[FatigueFacts]) -> str:
-    """Content of fatigue.json."""
-    return json.dumps(without_nan([asdict(each) for each in facts]), ensure_ascii=False, indent=1) + "\n"

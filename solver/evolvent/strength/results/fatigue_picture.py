@@ -11,13 +11,11 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.style import FAINT, PINION, PRESSURE_MAP, foot, friction_colours, png, sheet, styled
-from evolvent.strength.fatigue.criterion import BELOW, DANG_VAN, DEEP, ORTHOGONAL_SHEAR, VON_MISES
-from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
-from evolvent.strength.results.fatigue_tables import diameters
-from evolvent.strength.results.friction_fatigue import FrictionFatigue
+from evolvent.strength.fatigue.criterion import DANG_VAN, DEEP, ORTHOGONAL_SHEAR, VON_MISES
+from evolvent.strength.results.fatigue_facts import FatigueFacts
+from evolvent.strength.results.fatigue_rows import FatigueDepthRow, FatigueMapRow
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.gears.pair import GearPair
 
 PROFILES = {VON_MISES: "-", ORTHOGONAL_SHEAR: "--", DANG_VAN: ":"}
 """Criteria over the depth, and the style of their lines."""
@@ -25,28 +23,42 @@ LEVELS, DEPTHS, SHOWN = 24, 201, 2.5
 """Colours, depths at which they are drawn, and the deepest in half-widths of the contact."""
 
 
-def fatigue_picture(title: str, pair: GearPair, found: Sequence[FrictionFatigue]) -> bytes:
+def fatigue_picture(
+    title: str, facts: Sequence[FatigueFacts], over: Sequence[FatigueMapRow], section: Sequence[FatigueDepthRow],
+    below: Sequence[FatigueDepthRow],
+) -> bytes:
     """PNG of `fatigue_figure`."""
     with styled():
-        return png(fatigue_figure(title, pair, found))
+        return png(fatigue_figure(title, facts, over, section, below))
 
 
-def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue]) -> Figure:
+def fatigue_figure(
+    title: str, facts: Sequence[FatigueFacts], over: Sequence[FatigueMapRow], section: Sequence[FatigueDepthRow],
+    below: Sequence[FatigueDepthRow],
+) -> Figure:
     """The criterion of Dang Van over the pinion's flank and over the depth below mid-face, at the last friction
     coefficient; three criteria below the most loaded point, at all.
 
-    title: of the scene.
+    title: of the scene. over: all over the flanks; section: below points at mid-face; below: below the most loaded one.
     """
-    own, last = found[-1].gears[Member.PINION], found[-1].friction
+    last = over[-1].friction
+    points = [
+        row for row in over
+        if (row.gear, row.friction, row.criterion) == (Member.PINION.label, last, DANG_VAN.name)
+    ]
+    cut = [row for row in section if (row.gear, row.friction) == (Member.PINION.label, last)]
+    largest = [max(row.at_surface, row.at_0_02, row.at_0_05, row.at_0_1, row.below) for row in points]
+    scale = Normalize(0.0, max(*largest, *(row.value for row in cut)))
     figure = sheet(f"{title}: contact fatigue", f"Dang Van's equivalent shear stress on the pinion, μ = {last:g}; "
                    "right: criteria below the point with the largest contact pressure", (13.5, 5.0))
-    over, section, below = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 0.9))
-    if len(own.loads.peak):
-        scale = Normalize(0.0, float(own.values[DANG_VAN].max()))
-        _over_flank(over, pair, own, scale)
-        _section(section, pair, own, scale)
-        figure.colorbar(ScalarMappable(scale, PRESSURE_MAP), ax=section, label=f"{DANG_VAN.words} [MPa]")
-        _below(below, found)
+    flank, depth, profiles = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 0.9))
+    _over_flank(flank, points, scale)
+    _section(depth, cut, float(np.median([row.half_width_mm for row in points])), scale)
+    depth.set_title(f"{DANG_VAN.words}: below {'mid-face' if _has_width(points) else 'the flank'}", fontsize=10)
+    for axes in (flank, depth):
+        axes.axhline(facts[0].pinion_pitch_diameter_mm, color=FAINT, lw=0.8, ls="--")
+    figure.colorbar(ScalarMappable(scale, PRESSURE_MAP), ax=depth, label=f"{DANG_VAN.words} [MPa]")
+    _below(profiles, [row for row in below if row.gear == Member.PINION.label])
     foot(
         figure,
         "Elastic half-plane under the pressures and friction of the contact solution, one passage. Points in the zones "
@@ -55,35 +67,36 @@ def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue])
     return figure
 
 
-def _over_flank(axes: Axes, pair: GearPair, own: FlankFatigue, scale: Normalize) -> None:
+def _has_width(points: Sequence[FatigueMapRow]) -> bool:
+    """Whether points lie at several heights: not in plane strain."""
+    return len({row.height_mm for row in points}) > 1
+
+
+def _over_flank(axes: Axes, points: Sequence[FatigueMapRow], scale: Normalize) -> None:
     """Largest below the surface, over face and diameter; over the diameter alone in plane strain."""
-    diameter = diameters(pair, Member.PINION, own.loads.roll_distance)
-    values = own.values[DANG_VAN][:, own.at(BELOW)].max(axis=1)
+    columns = [(row.height_mm, row.diameter_mm, row.below) for row in points]
+    height, diameter, values = np.array(columns).T
     axes.set_title(f"{DANG_VAN.words}: largest below {DEEP:g} half-widths", fontsize=10)
     axes.set_ylabel("diameter of the pinion [mm]")
-    if len(np.unique(own.loads.height)) > 1:
-        axes.tricontourf(own.loads.height, diameter, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
+    if _has_width(points):
+        axes.tricontourf(height, diameter, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
         axes.set_xlabel("face [mm]")
     else:
-        order = np.argsort(diameter)
-        axes.plot(values[order], diameter[order], color=PINION, marker=".")
+        axes.plot(values, diameter, color=PINION, marker=".")
         axes.set_xlabel(f"{DANG_VAN.words} [MPa]")
-    _pitch_line(axes, pair)
 
 
-def _section(axes: Axes, pair: GearPair, own: FlankFatigue, scale: Normalize) -> None:
-    """Over depth and diameter at mid-face."""
-    heights = np.unique(own.loads.height)
-    middle = np.flatnonzero(own.loads.height == heights[np.argmin(np.abs(heights))])
-    middle = middle[np.argsort(own.loads.roll_distance[middle])]
-    diameter = diameters(pair, Member.PINION, own.loads.roll_distance[middle])
-    known = own.depths_mm[middle]
-    depths = np.linspace(0.0, float(np.median(own.loads.half_width)) * SHOWN, DEPTHS)
-    values = [np.interp(depths, *each) for each in zip(known, own.values[DANG_VAN][middle])]
-    axes.contourf(1e3 * depths, diameter, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
-    axes.set_title(f"{DANG_VAN.words}: below {'mid-face' if len(heights) > 1 else 'the flank'}", fontsize=10)
+def _section(axes: Axes, rows: Sequence[FatigueDepthRow], half_width: float, scale: Normalize) -> None:
+    """Over depth and diameter. rows: point by point; half_width: of the contact, median of the flank [mm]."""
+    depths = np.linspace(0.0, 1e3 * half_width * SHOWN, DEPTHS)
+    count = len({row.depth_over_half_width for row in rows})
+    points = [rows[k : k + count] for k in range(0, len(rows), count)]
+    values = [
+        np.interp(depths, [row.depth_um for row in point], [row.value for row in point]) for point in points
+    ]
+    diameters = [point[0].diameter_mm for point in points]
+    axes.contourf(depths, diameters, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
     axes.set_xlabel("depth [µm]")
-    _pitch_line(axes, pair)
 
 
 def _levels(scale: Normalize) -> Floats:
@@ -91,18 +104,15 @@ def _levels(scale: Normalize) -> Floats:
     return np.linspace(0.0, float(scale.vmax or 1.0), LEVELS + 1)
 
 
-def _pitch_line(axes: Axes, pair: GearPair) -> None:
-    axes.axhline(pair.working_pitch_diameters[0], color=FAINT, lw=0.8, ls="--")
-
-
-def _below(axes: Axes, found: Sequence[FrictionFatigue]) -> None:
-    for each, colour in zip(found, friction_colours([each.friction for each in found])):
-        own = each.gears[Member.PINION]
-        top = int(np.argmax(own.loads.peak))
+def _below(axes: Axes, rows: Sequence[FatigueDepthRow]) -> None:
+    """Criteria over the depth, a colour a friction coefficient."""
+    frictions = list(dict.fromkeys(row.friction for row in rows))
+    for friction, colour in zip(frictions, friction_colours(frictions)):
+        shown = [row for row in rows if row.friction == friction and row.depth_over_half_width <= SHOWN]
         for criterion, style in PROFILES.items():
-            here = own.depths <= SHOWN
-            axes.plot(own.values[criterion][top, here], 1e3 * own.depths_mm[top, here], style, color=colour)
-        axes.plot([], [], color=colour, label=f"μ = {each.friction:g}")
+            own = [row for row in shown if row.criterion == criterion.name]
+            axes.plot([row.value for row in own], [row.depth_um for row in own], style, color=colour)
+        axes.plot([], [], color=colour, label=f"μ = {friction:g}")
     for criterion, style in PROFILES.items():
         axes.plot([], [], style, color=FAINT, label=criterion.words)
     axes.set_ylim(axes.get_ylim()[1], 0.0)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH = (
-    "fatigue.csv", "fatigue_life.csv", "fatigue_map.csv", "fatigue_depth.csv"
-)
+from evolvent.results.tables.table import Table
 
 
 @dataclass(frozen=True)
@@ -130,7 +128,8 @@ class FatigueMapRow:
 
 @dataclass(frozen=True)
 class FatigueDepthRow:
-    """A line of fatigue_depth.csv: a criterion below the point of a flank with the largest contact pressure."""
+    """A line of fatigue_depth.csv: a criterion below the point of a flank with the largest contact pressure; and of
+    fatigue_section.csv, Dang Van's below the points of a flank at the height nearest to mid-face."""
 
     gear: str
     """pinion or wheel."""
@@ -148,3 +147,9 @@ class FatigueDepthRow:
     """The same, over the half-width of the contact."""
     value: float
     """In the unit of fatigue.csv."""
+
+
+FATIGUE, FATIGUE_LIFE = Table("fatigue.csv", FatigueRow), Table("fatigue_life.csv", FatigueLifeRow)
+FATIGUE_MAP = Table("fatigue_map.csv", FatigueMapRow)
+FATIGUE_DEPTH = Table("fatigue_depth.csv", FatigueDepthRow)
+FATIGUE_SECTION = Table("fatigue_section.csv", FatigueDepthRow)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from evolvent.strength.fatigue.criterion import BELOW, NEAR_SURFACE, SHALLOW, Criterion
+from evolvent.strength.fatigue.criterion import BELOW, DANG_VAN, NEAR_SURFACE, SHALLOW, Criterion
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
 from evolvent.strength.results.fatigue_rows import FatigueDepthRow, FatigueLifeRow, FatigueMapRow, FatigueRow
 from evolvent.strength.results.friction_fatigue import FrictionFatigue, changes, compared_point
@@ -42,8 +43,10 @@ def life_rows(found: Sequence[FrictionFatigue], exponents: Sequence[float]) -> I
                 for place in criterion.places:
                     ratios = changes(own, first, criterion, place)
                     for m, source in (*criterion.slopes_at(place), *((given, "") for given in exponents)):
+                        at_point, at_points = _lives(ratios, m)
                         yield FatigueLifeRow(
-                            member.label, each.friction, criterion.name, place, m, source, *_lives(ratios, m)
+                            gear=member.label, friction=each.friction, criterion=criterion.name, place=place,
+                            exponent=m, source=source, life_ratio=at_point, life_ratio_at_points=at_points,
                         )
 
 
@@ -68,13 +71,34 @@ def depth_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[Fat
             if not len(own.loads.peak):
                 continue
             top = int(np.argmax(own.loads.peak))
-            point = float(diameters(pair, member, own.loads.roll_distance[[top]])[0]), float(own.loads.height[top])
-            for criterion, values in own.values.items():
-                here = _down_to_the_last(own, criterion)
-                for ratio, depth, value in zip(own.depths[here], 1e3 * own.depths_mm[top, here], values[top, here]):
-                    yield FatigueDepthRow(
-                        member.label, each.friction, *point, criterion.name, float(depth), float(ratio), float(value)
-                    )
+            for criterion in own.values:
+                yield from _below(pair, member, each, criterion, top)
+
+
+def section_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[FatigueDepthRow]:
+    """Dang Van's criterion of both gears, at all friction coefficients, from the root of the pinion on."""
+    for each in found:
+        for member, own in zip(Member, each.gears):
+            heights = np.unique(own.loads.height)
+            if not len(heights):
+                continue
+            middle = np.flatnonzero(own.loads.height == heights[np.argmin(np.abs(heights))])
+            for k in middle[np.argsort(own.loads.roll_distance[middle])]:
+                yield from _below(pair, member, each, DANG_VAN, int(k))
+
+
+def _below(
+    pair: GearPair, member: Member, found: FrictionFatigue, criterion: Criterion, k: int
+) -> Iterator[FatigueDepthRow]:
+    """A criterion over the depth below point k of a flank."""
+    own = found.gears[member]
+    here, diameter = _down_to_the_last(own, criterion), diameters(pair, member, own.loads.roll_distance[[k]])[0]
+    for ratio, depth, value in zip(own.depths[here], own.depths_mm[k, here], own.values[criterion][k, here]):
+        yield FatigueDepthRow(
+            gear=member.label, friction=found.friction, diameter_mm=float(diameter),
+            height_mm=float(own.loads.height[k]), criterion=criterion.name, depth_um=1e3 * float(depth),
+            depth_over_half_width=float(ratio), value=float(value),
+        )
 
 
 def _down_to_the_last(own: FlankFatigue, criterion: Criterion) -> Bools:
@@ -89,15 +113,18 @@ def _flank(pair: GearPair, member: Member, friction: float, own: FlankFatigue) -
     reverses = near_reversal(pair, member, loads, friction)
     diameter = diameters(pair, member, loads.roll_distance)
     for k in np.lexsort((loads.height, loads.roll_distance)):
-        point = (
-            member.label, friction, float(diameter[k]), float(loads.height[k]), float(loads.roll_distance[k]),
-            float(loads.peak[k]), float(loads.half_width[k]), float(loads.friction[k]), bool(reverses[k]),
-        )
         for criterion, values in own.values.items():
             found = {place: _deepest(own, values[k], depths[k], place) for place in criterion.places}
             nothing = math.nan, math.nan
-            shallow = [found.get(place, nothing)[0] for place in NEAR_SURFACE]
-            yield FatigueMapRow(*point, criterion.name, *(*shallow, *found.get(BELOW, nothing)))
+            surface, *shallow = (found.get(place, nothing)[0] for place in NEAR_SURFACE)
+            below, depth = found.get(BELOW, nothing)
+            yield FatigueMapRow(
+                gear=member.label, friction=friction, diameter_mm=float(diameter[k]), height_mm=float(loads.height[k]),
+                roll_distance_mm=float(loads.roll_distance[k]), pressure_MPa=float(loads.peak[k]),
+                half_width_mm=float(loads.half_width[k]), traction_coefficient=float(loads.friction[k]),
+                near_friction_reversal=bool(reverses[k]), criterion=criterion.name, at_surface=surface,
+                at_0_02=shallow[0], at_0_05=shallow[1], at_0_1=shallow[2], below=below, depth_um=depth,
+            )
 
 
 def _deepest(own: FlankFatigue, values: Floats, depths: Floats, place: str) -> tuple[float, float]:
@@ -113,12 +140,16 @@ def _largest(
     pair: GearPair, member: Member, each: FrictionFatigue, criterion: Criterion, place: str, first: FrictionFatigue
 ) -> FatigueRow:
     own = each.gears[member]
-    head = member.label, each.friction, criterion.name, place
+    nothing = FatigueRow(
+        gear=member.label, friction=each.friction, criterion=criterion.name, place=place, value=math.nan,
+        unit=criterion.unit, value_error=math.nan, diameter_mm=math.nan, height_mm=math.nan, depth_um=math.nan,
+        roll_distance_mm=math.nan, pressure_MPa=math.nan, at_zone_end=False, near_friction_reversal=False,
+        at_depth_limit=False, point_roll_distance_mm=math.nan, point_value=math.nan, point_depth_um=math.nan,
+        change_percent=math.nan, change_percent_error=math.nan, change_at_points_percent=math.nan,
+        change_at_points_percent_error=math.nan,
+    )
     if not len(own.loads.peak):
-        no = math.nan
-        return FatigueRow(
-            *head, no, criterion.unit, no, no, no, no, no, no, False, False, False, no, no, no, no, no, no, no
-        )
+        return nothing
     columns = np.flatnonzero(own.at(place))
     values = own.values[criterion][:, columns]
     k, m = np.unravel_index(int(np.argmax(values)), values.shape)
@@ -126,12 +157,15 @@ def _largest(
     reverses = criterion.of_history & near_reversal(pair, member, own.loads, each.friction)
     errors = _change_errors(member, each, criterion, place, first)
     at_point, at_points = _change_percents(own, first.gears[member], criterion, place)
-    return FatigueRow(
-        *head, value, criterion.unit, value * criterion.pressure_power * each.pressure_error,
-        float(diameters(pair, member, np.array([ξ]))[0]), float(own.loads.height[k]),
-        1e3 * float(own.depths_mm[k, columns[m]]), ξ, float(own.loads.peak[k]), each.at_zone_end(ξ), bool(reverses[k]),
-        place == BELOW and m in (0, len(columns) - 1), *_point(own, first.gears[member], criterion, place),
-        at_point, errors[0], at_points, errors[1],
+    point = _point(own, first.gears[member], criterion, place)
+    return replace(
+        nothing, value=value, value_error=value * criterion.pressure_power * each.pressure_error,
+        diameter_mm=float(diameters(pair, member, np.array([ξ]))[0]), height_mm=float(own.loads.height[k]),
+        depth_um=1e3 * float(own.depths_mm[k, columns[m]]), roll_distance_mm=ξ, pressure_MPa=float(own.loads.peak[k]),
+        at_zone_end=each.at_zone_end(ξ), near_friction_reversal=bool(reverses[k]),
+        at_depth_limit=place == BELOW and m in (0, len(columns) - 1), point_roll_distance_mm=point[0],
+        point_value=point[1], point_depth_um=point[2], change_percent=at_point, change_percent_error=errors[0],
+        change_at_points_percent=at_points, change_at_points_percent_error=errors[1],
     )
 
 

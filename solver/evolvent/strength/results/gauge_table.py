@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
 from evolvent.fem.material import Material
-from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.error_bars.compared import Curve
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.table import Table
 from evolvent.strength.results.root_curves import value_errors
 from evolvent.strength.results.tables import FrictionRoots
 from evolvent.strength.strain_gauges import Gauge, gauge_strain
 from evolvent_meshes.arrays import Floats
-
-GAUGES = "gauges.csv"
 
 
 @dataclass(frozen=True)
@@ -41,6 +38,9 @@ class GaugeRow:
     """Its estimated error by the mesh; NaN without a coarse companion."""
 
 
+GAUGES = Table("gauges.csv", GaugeRow)
+
+
 def gauge_rows(
     gauges: Sequence[Gauge], found: Sequence[FrictionRoots], materials: tuple[Material, Material]
 ) -> Iterator[GaugeRow]:
@@ -52,8 +52,11 @@ def gauge_rows(
             strain = 1e6 * gauge_strain(gauge, roots, material)
             errors = _errors(gauge, each, strain, material)
             for angle, value, error in zip(roots.loaded_side.angles, strain, errors):
-                at = math.degrees(angle)
-                yield GaugeRow(number, gauge.member.label, side, each.friction, at, float(value), float(error))
+                yield GaugeRow(
+                    gauge=number, gear=gauge.member.label, side=side, friction=each.friction,
+                    tooth_rotation_deg=math.degrees(angle), strain_um_per_m=float(value),
+                    strain_um_per_m_error=float(error),
+                )
 
 
 def _errors(gauge: Gauge, roots: FrictionRoots, strain: Floats, material: Material) -> Floats:
@@ -62,8 +65,3 @@ def _errors(gauge: Gauge, roots: FrictionRoots, strain: Floats, material: Materi
     coarse = roots.coarse[gauge.member]
     rough = Curve(coarse.loaded_side.angles, 1e6 * gauge_strain(gauge, coarse, material))
     return value_errors(Curve(roots.gears[gauge.member].loaded_side.angles, strain), rough, roots.order)
-
-
-def write_gauges(folder: RunFolder, rows: Sequence[GaugeRow]) -> None:
-    """Writes gauges.csv. Raises WriteError, FolderError."""
-    folder.write_text(GAUGES, csv_text([asdict(row) for row in rows]))

@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.style import INK, foot, friction_colours, png, sheet, styled
-from evolvent.strength.results.root_curves import compression_curve, tension_curve
-from evolvent.strength.results.tables import STANDARD, FrictionRoots, StrengthRow
+from evolvent.strength.results.tables import STANDARD, RootStressRow, StrengthRow
 from evolvent_meshes.gears.member import Member
 
 MARKS = {"ISO": "s", "equal": "o", "Pedrero": "D"}
@@ -19,34 +18,36 @@ LINES: dict[str, str] = {f"{STANDARD}2006": ":", f"{STANDARD}2019": "-."}
 """Method of the standard -> style of its line."""
 
 
-def root_stress_picture(title: str, found: Sequence[FrictionRoots], rows: Sequence[StrengthRow]) -> bytes:
+def root_stress_picture(title: str, curves: Sequence[RootStressRow], rows: Sequence[StrengthRow]) -> bytes:
     """PNG of `root_stress_figure`."""
     with styled():
-        return png(root_stress_figure(title, found, rows))
+        return png(root_stress_figure(title, curves, rows))
 
 
-def root_stress_figure(title: str, found: Sequence[FrictionRoots], rows: Sequence[StrengthRow]) -> Figure:
+def root_stress_figure(title: str, curves: Sequence[RootStressRow], rows: Sequence[StrengthRow]) -> Figure:
     """Largest tension of the loaded side and compression of the back over the rotation of a tooth, a column a gear; the
     formulas at the rotation of their load.
 
-    title: of the scene. rows: of both gears.
+    title: of the scene. curves: of finite elements; rows: by each way; both of both gears.
     """
     head = "Root stress over the engagement of a tooth"
     figure = sheet(head, f"{title}. Nominal, without load factors.", (11.0, 6.2))
     axes = figure.subplots(1, 2, sharey=True)
-    colours = friction_colours([each.friction for each in found])
+    frictions = list(dict.fromkeys(row.friction for row in curves))
+    colours = friction_colours(frictions)
     for member, own in zip(Member, axes):
-        for each, colour in zip(found, colours):
-            for curve, style in ((tension_curve, "-"), (compression_curve, "--")):
-                stress = curve(each.gears[member])
-                own.plot(np.degrees(stress.angle), stress.values, style, color=colour, lw=1.6)
+        for friction, colour in zip(frictions, colours):
+            curve = [row for row in curves if (row.gear, row.friction) == (member.label, friction)]
+            for name, style in (("tension_MPa", "-"), ("compression_MPa", "--")):
+                stress = [getattr(row, name) for row in curve]
+                own.plot([row.tooth_rotation_deg for row in curve], stress, style, color=colour, lw=1.6)
         _formulas(own, [row for row in rows if row.gear == member.label and np.isnan(row.friction)])
         own.axhline(0.0, color=INK, lw=0.6)
         own.set_title(member.label)
         own.set_xlabel("pinion rotation from the pitch point [°]")
     axes[0].set_ylabel("principal stress at the root [MPa]")
-    for each, colour in zip(found, colours):
-        axes[0].plot([], [], color=colour, label=f"finite elements, μ = {each.friction:g}")
+    for friction, colour in zip(frictions, colours):
+        axes[0].plot([], [], color=colour, label=f"finite elements, μ = {friction:g}")
     axes[1].legend(*_named(axes), loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
     foot(figure, "Full: largest tension of the loaded side; dashed: compression of the back. Places: strength.csv.")
     return figure

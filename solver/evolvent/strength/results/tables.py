@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.table import Table
 from evolvent.strength.results.root_curves import compression_curve, curve_errors, tension_curve
 from evolvent.strength.root_passage import GearRoots, RootPeak
 from evolvent.strength.standard.factors import Edition
@@ -23,7 +22,6 @@ from evolvent.strength.standard.root_stress import (
 from evolvent.strength.standard.tooth_form import NOTCH
 from evolvent_meshes.gears.member import Member
 
-STRENGTH, ROOT_STRESS = "strength.csv", "root_stress.csv"
 STANDARD, TENSION, COMPRESSION = "ISO 6336-3:", "finite elements, tension", "finite elements, compression"
 """Methods of strength.csv: the standard, with its edition behind; the largest of the loaded side, and of the back."""
 UNKNOWN = math.nan
@@ -111,6 +109,9 @@ class RootStressRow:
     """Its estimated error by the mesh; NaN without a coarse companion."""
 
 
+STRENGTH, ROOT_STRESS = Table("strength.csv", StrengthRow), Table("root_stress.csv", RootStressRow)
+
+
 def strength_rows(
     load: RootLoad, found: Sequence[FrictionRoots], editions: Sequence[Edition], tolerance_class: int
 ) -> Iterator[StrengthRow]:
@@ -149,18 +150,22 @@ def _of_point(
     form, section, gear = point.form, point.form.section, load.pair.gears[load.member]
     above = math.hypot(section.height, 0.5 * section.chord) - 0.5 * section.gear.reference_diameter
     return StrengthRow(
-        load.member.label, method, UNKNOWN, point.stress, UNKNOWN, math.degrees(load.tooth_rotation(point.below_tip)),
-        0.5 * gear.reference_diameter + above, 0.0, 30.0, point.share, point.stress / point.share,
-        form.form_factor if form_factor is None else form_factor, form.stress_correction_factor, form.notch_parameter,
-        others, UNKNOWN, UNKNOWN,
+        gear=load.member.label, method=method, friction=UNKNOWN, stress_MPa=point.stress, stress_MPa_error=UNKNOWN,
+        tooth_rotation_deg=math.degrees(load.tooth_rotation(point.below_tip)),
+        radius_mm=0.5 * gear.reference_diameter + above, height_mm=0.0, tangent_angle_deg=30.0, load_share=point.share,
+        whole_load_MPa=point.stress / point.share, form_factor=form.form_factor if form_factor is None else form_factor,
+        stress_correction_factor=form.stress_correction_factor, notch_parameter=form.notch_parameter,
+        other_factors=others, mean_MPa=UNKNOWN, amplitude_MPa=UNKNOWN,
     )
 
 
 def _of_peak(load: RootLoad, method: str, friction: float, peak: RootPeak, error: float) -> StrengthRow:
     return StrengthRow(
-        load.member.label, method, friction, peak.stress, error, math.degrees(peak.angle), peak.radius, peak.height,
-        math.degrees(peak.tangent_angle), peak.load_share, peak.whole_load, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN,
-        peak.mean, peak.amplitude,
+        gear=load.member.label, method=method, friction=friction, stress_MPa=peak.stress, stress_MPa_error=error,
+        tooth_rotation_deg=math.degrees(peak.angle), radius_mm=peak.radius, height_mm=peak.height,
+        tangent_angle_deg=math.degrees(peak.tangent_angle), load_share=peak.load_share, whole_load_MPa=peak.whole_load,
+        form_factor=UNKNOWN, stress_correction_factor=UNKNOWN, notch_parameter=UNKNOWN, other_factors=UNKNOWN,
+        mean_MPa=peak.mean, amplitude_MPa=peak.amplitude,
     )
 
 
@@ -188,17 +193,13 @@ def root_stress_rows(found: Sequence[FrictionRoots]) -> Iterator[RootStressRow]:
     for each in found:
         for member, own in zip(Member, each.gears):
             coarse, angles = None if each.coarse is None else each.coarse[member], own.loaded_side.angles
-            columns = [
-                values
-                for curve in (tension_curve, compression_curve)
-                for values in (curve(own).values, curve_errors(curve, own, coarse, each.order).values)
-            ]
-            for angle, *values in zip(angles, *columns):
-                yield RootStressRow(member.label, each.friction, math.degrees(angle), *map(float, values))
-
-
-def write_strength(folder: RunFolder, rows: Sequence[StrengthRow], over_rotation: Sequence[RootStressRow]) -> None:
-    """Writes both tables. Raises WriteError, FolderError."""
-    folder.write_text(STRENGTH, csv_text([asdict(row) for row in rows]))
-    folder.write_text(ROOT_STRESS, csv_text([asdict(row) for row in over_rotation]))
+            curves = tension_curve, compression_curve
+            columns = [curve(own).values for curve in curves]
+            bars = [curve_errors(curve, own, coarse, each.order).values for curve in curves]
+            for angle, tension, compression, of_tension, of_compression in zip(angles, *columns, *bars):
+                yield RootStressRow(
+                    gear=member.label, friction=each.friction, tooth_rotation_deg=math.degrees(angle),
+                    tension_MPa=float(tension), tension_MPa_error=float(of_tension), compression_MPa=float(compression),
+                    compression_MPa_error=float(of_compression),
+                )
 

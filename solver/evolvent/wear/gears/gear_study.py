@@ -153,6 +153,8 @@ def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:
     width = gears.model.width_factor
     volumes = [width * float(areas @ depth) for areas, depth in zip(gears.by_gear(gears.areas), depths)]
     return BlockRow(
-        state.cycles, block.length, block.error, block.refused, state.evaluation.searched, gears.mesh_updates,
-        *deepest, *volumes,
+        cycles=state.cycles, block_cycles=block.length, error=block.error, refused=block.refused,
+        searched=state.evaluation.searched, refreshed=gears.mesh_updates, deepest_pinion_um=deepest[Member.PINION],
+        deepest_wheel_um=deepest[Member.WHEEL], volume_pinion_mm3=volumes[Member.PINION],
+        volume_wheel_mm3=volumes[Member.WHEEL],
     )

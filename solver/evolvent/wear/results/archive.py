@@ -22,7 +22,7 @@ from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import write_scene
 from evolvent.results.archive.store import Arrays
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.table import Table
 from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import PreviousBlock
 from evolvent.wear.gears.gear_study import BlockRow, StudyCheckpoint
@@ -32,6 +32,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
 FILE = "results/wear.npz"
+BLOCKS, VIBRATION = Table("wear.csv", BlockRow), Table("vibration.csv", VibrationRow)
 COUNTS = "refused", "searched", "refreshed", "repeats"  # the integer columns of rows
 R = TypeVar("R", BlockRow, VibrationRow)
 
@@ -50,11 +51,8 @@ def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
         "vibration_torques": np.zeros(0) if vibration is None else np.array(vibration.torques),
         "vibration_searches": np.zeros((0, 4)) if vibration is None else _places(vibration.searches),
     }
-    if checkpoint.vibrations:
-        rows = [{"cycles": row.cycles, **asdict(row)} for row in checkpoint.vibrations]  # the cycles first
-        archive.files.write_text("vibration.csv", csv_text(rows))
-    if checkpoint.rows:
-        archive.files.write_text("wear.csv", csv_text([asdict(row) for row in checkpoint.rows]))
+    VIBRATION.write(archive.files, checkpoint.vibrations)
+    BLOCKS.write(archive.files, checkpoint.rows)
     archive.store.write(FILE, arrays)
 
 

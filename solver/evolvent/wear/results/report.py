@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.results.tables.tables import without_nan
+from evolvent.results.tables.table import Record
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow
@@ -83,6 +82,9 @@ class WearReport:
     """The pair at the beginning and at each report."""
 
 
+WEAR = Record("wear.json", WearReport)
+
+
 @dataclass(frozen=True)
 class WornPair:
     """The pair after some cycles.
@@ -113,9 +115,11 @@ class WornPair:
         """The figures of the pair for wear.json."""
         row = friction_rows(self.run)[0]
         return PairReport(
-            self.cycles, self._gear(Member.PINION), self._gear(Member.WHEEL), row.max_pressure_MPa,
-            row.kink_pressure_MPa, row.transmission_error_peak_to_peak_um, row.mesh_stiffness_N_per_mm_um,
-            row.loss_percent, row.balance_error,
+            cycles=self.cycles, pinion=self._gear(Member.PINION), wheel=self._gear(Member.WHEEL),
+            max_pressure_MPa=row.max_pressure_MPa, kink_pressure_MPa=row.kink_pressure_MPa,
+            transmission_error_peak_to_peak_um=row.transmission_error_peak_to_peak_um,
+            mesh_stiffness_N_per_mm_um=row.mesh_stiffness_N_per_mm_um, loss_percent=row.loss_percent,
+            balance_error=row.balance_error,
         )
 
     def _gear(self, gear: Member) -> GearReport:
@@ -192,10 +196,7 @@ def write_report(study: WornRun, folder: RunFolder) -> None:
     assert wear is not None
     report = WearReport(
         {"pinion": wear.pinion_mm2_per_N, "wheel": wear.wheel_mm2_per_N},
-        blocks=len(study.rows),
-        refused_blocks=sum(row.refused for row in study.rows),
-        largest_block_error=max(row.error for row in study.rows),
-        reports=tuple(pair.report() for pair in study.pairs),
+        blocks=len(study.rows), refused_blocks=sum(row.refused for row in study.rows),
+        largest_block_error=max(row.error for row in study.rows), reports=tuple(pair.report() for pair in study.pairs),
     )
-    text = json.dumps(without_nan(asdict(report)), ensure_ascii=False, indent=1, allow_nan=False)
-    folder.write_text("wear.json", text + "\n")
+    WEAR.write(folder, report)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -11,8 +12,11 @@ from evidence.benchmarks.accuracy import transient_bar_costs
 from evidence.benchmarks.accuracy.transient_bar_costs import CASES, KEPT, CostCase, CostRow, cost_rows, said
 from evidence.processes import Command, Cost, RunFailed
 from evidence.tables import write_rows
+from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS, TransientFacts
+from evolvent.results.archive.run_folder import RunFolder
 from evolvent.scene.scene import load_scene
 from tests.support.checkout import ROOT
+from tests.support.made_rows import made
 
 QUICK = CostCase("quick", "a case", "he2022_dynamics.toml", (
     "mesh.level=quick", "sweep.positions=6", "transient.speeds_rpm=[3000]", "dynamics.damping_ratio=0.2",
@@ -47,8 +51,9 @@ class MadeRuns:
         self.commands.append(command)
         folder = Path(command.words[command.words.index("--out") + 1])
         folder.mkdir()
-        fact = {"speed_rpm": 3000.0, "friction": 0.0, "dynamic_factor_error": self.bar}
-        (folder / "transient.json").write_text(json.dumps([fact]))
+        bar = math.nan if self.bar is None else self.bar
+        fact = made(TransientFacts, speed_rpm=3000.0, friction=0.0, dynamic_factor_error=bar)
+        TRANSIENT_FACTS.write(RunFolder(folder), [fact])
         return Cost(wall=1.0, cpu=next(self.seconds), memory_MB=1.0)
 
 

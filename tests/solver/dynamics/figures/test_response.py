@@ -15,7 +15,7 @@ from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.figures.response import ISO, response_figure
 from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
 from evolvent.dynamics.pair_model import DriveSettings, drive
-from evolvent.dynamics.results.response import branch_rows, responses
+from evolvent.dynamics.results.response import branch_rows, largest_force, response_rows, responses, summary
 from evolvent.dynamics.results.response_errors import Vibration, VibrationErrors, vibration_errors
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
 from evolvent.scene.gear_problem import gear_problem
@@ -23,6 +23,7 @@ from tests.support.gear_cases import spur_scene
 
 LOAD, SPEEDS = 1000.0, np.linspace(3000.0, 6000.0, 5)
 DEVIATING = Accuracy(5.0, 5.0)
+SETTINGS = DriveSettings((7.65, 7.65), 0.1, 0.05, mesh="tangent")
 BARS = np.array([1e-4, 2e-4, 3e-4, 2e-4, 1e-4])
 """Of the amplitude [mm]."""
 
@@ -33,7 +34,7 @@ def drawn(known: bool, accuracy: Accuracy = DEVIATING) -> Figure:
     error, stiffness = 2e-4 * np.cos(2.0 * np.pi * np.arange(8) / 8), np.full((8, 2), 3e5)
     angles = 2.0 * np.pi / 50.0 * np.arange(8) / 8
     mesh = MeshExcitation(error, LoadedMesh(angles, forces, error[:, None] + forces / stiffness, stiffness))
-    vibrating = drive(pair, mesh, LOAD, DriveSettings((7.65, 7.65), 0.1, 0.05, mesh="tangent"))
+    vibrating = drive(pair, mesh, LOAD, SETTINGS)
     swept = sweep_speeds(vibrating.model, speeds_to_periods(SPEEDS, 50))
     found = responses(vibrating, swept)
     errors: VibrationErrors = vibration_errors(Vibration(vibrating, found, {"up": (), "down": ()}), [], np.nan)
@@ -41,7 +42,9 @@ def drawn(known: bool, accuracy: Accuracy = DEVIATING) -> Figure:
         both = {"up": BARS, "down": 9.0 * BARS}
         errors = replace(errors, amplitude=both, dynamic_factor={way: 1e3 * bars for way, bars in both.items()})
     iso = method_b(pair, vibrating.model.mass, LOAD, accuracy, (2.1e5, 2.1e5))
-    return response_figure(vibrating, swept, found, list(branch_rows(vibrating, swept)), iso, errors)
+    facts = summary(vibrating, SETTINGS, swept, largest_force(found), 2.0 * LOAD, iso, errors)
+    rows = list(response_rows(vibrating, swept, found, iso, errors))
+    return response_figure(facts, rows, list(branch_rows(vibrating, swept)))
 
 
 def bands(axes: Axes) -> list[PolyCollection]:

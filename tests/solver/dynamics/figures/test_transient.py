@@ -14,7 +14,7 @@ FORCE, PRESSURE = 1, 2
 
 def panels(*speeds: float) -> list:  # type: ignore[type-arg]
     tables = transient_tables(speeds or (1500.0,))
-    figure = transient_figure(tables.title, tables.rows, tables.teeth, tables.facts)
+    figure = transient_figure("a pair", tables.rows, tables.teeth, tables.facts)
     figure.draw_without_rendering()
     return figure.axes
 

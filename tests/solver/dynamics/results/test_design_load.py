@@ -11,7 +11,7 @@ import pytest
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
-from evolvent.dynamics.results.design_load import ExcitationFacts, excitation_facts, write_excitation_facts
+from evolvent.dynamics.results.design_load import EXCITATION_FACTS, ExcitationFacts, excitation_facts
 from evolvent.results.archive.run_folder import RunFolder
 
 RADIUS, STIFFNESS, DESIGN = 70.0, 400e3, 1730.0
@@ -57,6 +57,6 @@ def test_range_within_the_error() -> None:
 @pytest.mark.parametrize("forces", [(500.0, 1000.0, 1500.0), (2000.0, 2500.0), (1000.0,)])
 def test_no_design_load_at_an_end(forces: tuple[float, ...], tmp_path: Path) -> None:
     """Where the value still falls at the lightest or the heaviest torque there is none: null in the file."""
-    write_excitation_facts(RunFolder(tmp_path), facts(mesh(forces=forces)))
+    EXCITATION_FACTS.write(RunFolder(tmp_path), facts(mesh(forces=forces)))
     kept = json.loads((tmp_path / "excitation.json").read_text(encoding="utf-8"))
     assert kept["design_torque_Nm"] is None and kept["title"] == "a mesh" and kept["positions"] == 24

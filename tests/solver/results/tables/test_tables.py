@@ -13,7 +13,8 @@ import pytest
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import degrees, friction_rows, position_rows
-from evolvent.results.tables.tables import cell_text, csv_text, summary, write_tables
+from evolvent.results.tables.table import cell_text, csv_text
+from evolvent.results.tables.tables import summary, write_tables
 from tests.support.run_parts import FACTS, store
 from tests.support.synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
 

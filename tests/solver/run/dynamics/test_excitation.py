@@ -23,6 +23,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.gear_cases import model_of, spur_scene, swept
 from tests.support.running.processes import Run, on_ranks
+from tests.support.running.redrawn import redrawn
 
 SETTINGS = "mesh.level=quick", "output.pictures=true", "sweep.positions=6"
 PERCENTS = [50.0, 100.0]
@@ -43,6 +44,11 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("excitation")
     assert run_excitation(scene_torques(spur_scene(*SETTINGS), PERCENTS), folder, quiet=True) == []
     return folder
+
+
+def test_plot_draws_the_excitation_again(out: Path, tmp_path: Path) -> None:
+    """From the tables alone, byte by byte."""
+    assert redrawn(out, tmp_path) == {"excitation.png"}
 
 
 def test_table_has_what_a_sweep_finds(out: Path) -> None:

@@ -11,12 +11,16 @@ import pytest
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
+from evolvent.dynamics.figures.all import VIBRATION_PICTURES
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState
 from evolvent.dynamics.pair_model import Drive, DriveSettings, MeshModel
+from evolvent.dynamics.results.torque_map import TORQUE_MAP
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.run.dynamics import torque_map as module
 from evolvent.run.dynamics.speeds import sweep_at
-from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
+from evolvent.run.dynamics.torque_map import TorqueMap, torque_map
 from evolvent.run.dynamics.vibration import run_dynamics
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
@@ -24,6 +28,7 @@ from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.arrays import Floats
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET, spur_scene
+from tests.support.running.redrawn import redrawn
 
 PHASES = np.arange(12) / 12
 STIFFNESS = 2.6e5 * (1.0 + 0.04 * np.cos(2.0 * np.pi * PHASES) + 0.02 * np.sin(4.0 * np.pi * PHASES))
@@ -105,10 +110,12 @@ def test_a_load_that_fails_leaves_the_others(monkeypatch: pytest.MonkeyPatch) ->
     )
 
 
-def test_without_rows_there_is_no_picture() -> None:
+def test_without_rows_there_is_no_picture(tmp_path: Path) -> None:
     """Where no load has steady states nothing is drawn; of one with them a picture is."""
-    assert map_pictures(TorqueMap((), ())) == []
-    (picture,) = map_pictures(linear_map("tangent"))
+    TORQUE_MAP.write(RunFolder(tmp_path), [])
+    assert list(from_tables(VIBRATION_PICTURES, tmp_path)) == []
+    TORQUE_MAP.write(RunFolder(tmp_path), linear_map("tangent").rows)
+    (picture,) = from_tables(VIBRATION_PICTURES, tmp_path)
     assert picture.name == "torque_map.png" and picture.draw().startswith(b"\x89PNG")
 
 
@@ -119,6 +126,11 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert one.dynamics is not None
     run_dynamics(one, folder, quiet=True)
     return folder
+
+
+def test_plot_draws_the_map_again(out: Path, tmp_path: Path) -> None:
+    """From the tables alone, byte by byte."""
+    assert redrawn(out, tmp_path) == {"excitation.png", "vibration.png", "waterfall.png", "torque_map.png"}
 
 
 def test_line_of_the_scenes_torque_is_the_response(out: Path) -> None:

@@ -16,6 +16,7 @@ from evolvent.scene.schema.fatigue import NEEDED, FatigueSection
 from evolvent.strength.fatigue.criterion import SHALLOW
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
+from tests.support.running.redrawn import redrawn
 
 SETTINGS = (
     "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=8", "output.animation=false",
@@ -40,6 +41,11 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (said,) = run_fatigue(scene(), folder, quiet=True)
     assert "elements across the contact (median): below 2" in said
     return folder
+
+
+def test_plot_draws_fatigue_again(out: Path, tmp_path: Path) -> None:
+    """From the tables alone, byte by byte."""
+    assert redrawn(out, tmp_path) == {"fatigue.png"}
 
 
 def largest(out: Path, gear: str, criterion: str, place: str, friction: float) -> dict[str, str]:
@@ -131,7 +137,7 @@ def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:
     alone = scene("contact.friction=0.1", "output.error_bars=false", "output.pictures=false")
     assert len(run_fatigue(alone, tmp_path, quiet=True)) == 1
     assert sorted(path.name for path in tmp_path.glob("fatigue*.csv")) == [
-        "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv"]
+        "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv", "fatigue_section.csv"]
 
 
 def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:

@@ -20,6 +20,7 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
+from tests.support.running.redrawn import redrawn
 
 GAUGE = (
     'strength.gauges.gear=["pinion"]', 'strength.gauges.side=["loaded"]', "strength.gauges.angle_deg=[45.0]",
@@ -43,6 +44,11 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("strength")
     assert run_strength(scene(), folder, quiet=True) == []
     return folder
+
+
+def test_plot_draws_root_stress_again(out: Path, tmp_path: Path) -> None:
+    """From the tables alone, byte by byte."""
+    assert redrawn(out, tmp_path) == {"root_stress.png"}
 
 
 def test_folder_has_the_scene(out: Path) -> None:

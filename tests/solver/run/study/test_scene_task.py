@@ -29,7 +29,7 @@ def test_record_is_kept(task: SceneTask) -> None:
     """Computed once: the second call reads the record. One that is cut off, or of another name, is none."""
     record = solve(task)
     assert record.status == "done" and read_record(task.folder) == record == solve(task)
-    path = task.folder / RECORD
+    path = task.folder / RECORD.name
     text = path.read_text()
     path.write_text(text[:-20])
     assert read_record(task.folder) is None

@@ -12,9 +12,12 @@ from evolvent.results.drawing.style import OVER
 from evolvent.strength.fatigue.criterion import DANG_VAN
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads
+from evolvent.strength.results.fatigue_facts import FatigueFacts
 from evolvent.strength.results.fatigue_picture import fatigue_figure
+from evolvent.strength.results.fatigue_tables import depth_rows, map_rows, section_rows
 from evolvent.strength.results.friction_fatigue import FrictionFatigue
 from tests.support.gear_cases import spur_scene
+from tests.support.made_rows import made
 
 COUNT, DEPTHS = 5, (0.0, 0.1, 0.2, 0.5, 0.8, 1.5, 3.0)
 STEEL = FatigueMaterial(0.3, 80e3, None, 0.3, 0.0, 1.0)
@@ -26,8 +29,11 @@ def drawn() -> Figure:
         np.zeros((2, COUNT), dtype=int), np.linspace(-3.0, 3.0, COUNT), np.zeros(COUNT),
         np.linspace(800.0, 1500.0, COUNT), np.full(COUNT, 0.1), np.full(COUNT, 0.1),
     )
-    own = flank_fatigue(loads, 0.1, DEPTHS, STEEL)
-    return fatigue_figure("a pair", spur_scene().gear_pair(), [FrictionFatigue(0.1, (own, own), math.nan)])
+    own, pair = flank_fatigue(loads, 0.1, DEPTHS, STEEL), spur_scene().gear_pair()
+    found = [FrictionFatigue(0.1, (own, own), math.nan)]
+    facts = [made(FatigueFacts, pinion_pitch_diameter_mm=pair.working_pitch_diameters[0])]
+    over, section, below = list(map_rows(pair, found)), list(section_rows(pair, found)), list(depth_rows(pair, found))
+    return fatigue_figure("a pair", facts, over, section, below)
 
 
 def test_every_panel_names_its_criterion() -> None:

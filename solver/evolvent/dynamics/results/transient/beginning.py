@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,12 +13,9 @@ from evolvent.dynamics.results.transient.curves import MotionCurves
 from evolvent.dynamics.results.transient.errors import MovingCompanion
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.gears.gear_model import GearModel
-from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.table import Table
 from evolvent_meshes.arrays import Floats
-
-TRANSIENT_START = "transient_start.csv"
 
 
 @dataclass(frozen=True)
@@ -53,6 +50,9 @@ class StartRow:
     """Its estimated error, likewise."""
     static_max_pressure_MPa: float
     """The same without inertia."""
+
+
+TRANSIENT_START = Table("transient_start.csv", StartRow)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,13 +171,12 @@ def start_rows(
         for k, (moment, peak, of_error, of_force, of_peak) in enumerate(zip(case.found.beginning, *values), 1):
             still = k % len(case.static)
             yield StartRow(
-                case.speed, case.friction, moment.time, float(np.degrees(own.angle[k - 1])),
-                UM * moment.result.transmission_error, float(of_error),
-                UM * case.static[still].transmission_error, width * moment.mesh_force, width * float(of_force),
-                width * case.load, float(peak), float(of_peak), float(calm[still]),
+                speed_rpm=case.speed, friction=case.friction, time_s=moment.time,
+                pinion_angle_deg=float(np.degrees(own.angle[k - 1])),
+                transmission_error_um=UM * moment.result.transmission_error,
+                transmission_error_um_error=float(of_error),
+                static_transmission_error_um=UM * case.static[still].transmission_error,
+                mesh_force_N=width * moment.mesh_force, mesh_force_N_error=width * float(of_force),
+                load_N=width * case.load, max_pressure_MPa=float(peak), max_pressure_MPa_error=float(of_peak),
+                static_max_pressure_MPa=float(calm[still]),
             )
-
-
-def write_start(folder: RunFolder, rows: Sequence[StartRow]) -> None:
-    """transient_start.csv. Raises WriteError."""
-    folder.write_text(TRANSIENT_START, csv_text([asdict(row) for row in rows]))

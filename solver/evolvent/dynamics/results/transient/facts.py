@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import zip_longest
 
 import numpy as np
@@ -17,11 +16,8 @@ from evolvent.dynamics.results.transient.compared import FINER
 from evolvent.dynamics.results.transient.curves import largest
 from evolvent.dynamics.results.transient.errors import CaseErrors
 from evolvent.gears.gear_model import GearModel
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import without_nan
+from evolvent.results.tables.table import Table
 from evolvent_meshes.arrays import Floats
-
-TRANSIENT_FACTS = "transient.json"
 
 
 @dataclass(frozen=True)
@@ -117,6 +113,9 @@ class TransientFacts:
     """Taken out by the time scheme, likewise; beside damping_loss it says how much of the damping is numerical."""
 
 
+TRANSIENT_FACTS = Table("transient.json", TransientFacts)
+
+
 def transient_facts(
     model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors], starts: Sequence[StartErrors],
     frequencies: Floats, naturals: Sequence[float],
@@ -133,28 +132,30 @@ def transient_facts(
         steps, every = found.steps, [moment.steps for moment in (*found.moments, *found.beginning)]
         step = (found.moments[-1].time - found.moments[-2].time) / (steps.accepted / len(found.moments))
         facts.append(TransientFacts(
-            case.speed, case.friction, case.speed / 60.0 * model.pair.pinion.z, found.periods,
-            float(found.changes[-1]) if len(found.changes) else None, found.is_steady, len(frequencies), lowest,
-            natural, bars.natural_frequency * natural, 1.0 / (natural * step), steps.accepted,
-            min(each.shortest for each in every), steps.rejected, max(each.error for each in every),
-            width * found.mean_force, width * load,
-            UM * float(np.ptp(motion)), bars.peak_to_peak_um,
-            UM * float(np.ptp([still.transmission_error for still in case.static])), bars.static_peak_to_peak_um,
-            steps.largest_force / load, bars.dynamic_factor,
-            max((moment.steps.largest_force / load for moment in found.beginning), default=None),
-            start.largest_force / load if start else None,
-            float(np.mean([len(result.contact.tooth) == 0 for result in case.results])), largest(moving),
-            bars.max_pressure, largest(still), bars.static_max_pressure, worst.momentum, worst.reaction, worst.moment,
-            worst.motion, worst.exchange, abs(energies.left) / passed, energies.friction / passed,
-            energies.damping / passed, energies.numerical / passed,
+            speed_rpm=case.speed, friction=case.friction, mesh_frequency_Hz=case.speed / 60.0 * model.pair.pinion.z,
+            mesh_periods=found.periods, last_change=float(found.changes[-1]) if len(found.changes) else None,
+            steady=found.is_steady, modes=len(frequencies), lowest_mode_Hz=lowest, natural_frequency_Hz=natural,
+            natural_frequency_Hz_error=bars.natural_frequency * natural,
+            steps_per_natural_period=1.0 / (natural * step), time_steps=steps.accepted,
+            shortest_step_s=min(each.shortest for each in every), rejected_steps=steps.rejected,
+            step_error=max(each.error for each in every), mean_force_N=width * found.mean_force, load_N=width * load,
+            peak_to_peak_um=UM * float(np.ptp(motion)), peak_to_peak_um_error=bars.peak_to_peak_um,
+            static_peak_to_peak_um=UM * float(np.ptp([still.transmission_error for still in case.static])),
+            static_peak_to_peak_um_error=bars.static_peak_to_peak_um, dynamic_factor=steps.largest_force / load,
+            dynamic_factor_error=bars.dynamic_factor,
+            start_dynamic_factor=max(
+                (moment.steps.largest_force / load for moment in found.beginning), default=None
+            ),
+            start_dynamic_factor_error=start.largest_force / load if start else None,
+            separated=float(np.mean([len(result.contact.tooth) == 0 for result in case.results])),
+            max_pressure_MPa=largest(moving), max_pressure_MPa_error=bars.max_pressure,
+            static_max_pressure_MPa=largest(still), static_max_pressure_MPa_error=bars.static_max_pressure,
+            momentum_error=worst.momentum, reaction_error=worst.reaction, moment_error=worst.moment,
+            motion_energy_error=worst.motion, step_energy_error=worst.exchange,
+            period_energy_error=abs(energies.left) / passed, friction_loss=energies.friction / passed,
+            damping_loss=energies.damping / passed, numerical_loss=energies.numerical / passed,
         ))
     return facts
-
-
-def write_facts(folder: RunFolder, facts: Sequence[TransientFacts]) -> None:
-    """transient.json. Raises WriteError."""
-    known = without_nan([asdict(each) for each in facts])
-    folder.write_text(TRANSIENT_FACTS, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
 
 
 def sentences(

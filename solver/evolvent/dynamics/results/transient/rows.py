@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,10 +12,7 @@ from evolvent.dynamics.results.transient.errors import CaseErrors
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.pressure.line_peaks import line_peak
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
-
-TRANSIENT, TRANSIENT_TEETH = "transient.csv", "transient_teeth.csv"
+from evolvent.results.tables.table import Table
 
 
 @dataclass(frozen=True)
@@ -82,6 +79,9 @@ class TransientToothRow:
     """The same without inertia."""
 
 
+TRANSIENT, TRANSIENT_TEETH = Table("transient.csv", TransientRow), Table("transient_teeth.csv", TransientToothRow)
+
+
 def transient_rows(
     model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors]
 ) -> Iterator[TransientRow]:
@@ -93,10 +93,13 @@ def transient_rows(
         for moment, still, peak, calm, of_error, of_force, of_peak in zip(case.found.moments, case.static, *columns):
             result, angle = moment.result, moment.result.stand.angle
             yield TransientRow(
-                case.speed, case.friction, float(np.degrees(angle)), 30.0 / np.pi * angle / case.speed,
-                UM * result.transmission_error, float(of_error), UM * still.transmission_error, moment.rate,
-                width * moment.mesh_force, width * float(of_force), 1e-3 * width * result.torques[0],
-                1e-3 * width * result.torques[1], float(peak), float(of_peak), float(calm),
+                speed_rpm=case.speed, friction=case.friction, pinion_angle_deg=float(np.degrees(angle)),
+                time_s=30.0 / np.pi * angle / case.speed, transmission_error_um=UM * result.transmission_error,
+                transmission_error_um_error=float(of_error), static_transmission_error_um=UM * still.transmission_error,
+                velocity_mm_per_s=moment.rate, mesh_force_N=width * moment.mesh_force,
+                mesh_force_N_error=width * float(of_force), pinion_torque_Nm=1e-3 * width * result.torques[0],
+                wheel_torque_Nm=1e-3 * width * result.torques[1], max_pressure_MPa=float(peak),
+                max_pressure_MPa_error=float(of_peak), static_max_pressure_MPa=float(calm),
             )
 
 
@@ -119,16 +122,11 @@ def tooth_rows(
                 angle = moving.stand.angle + tooth * pitch
                 of_force, of_peak = bars.of_tooth(angle)
                 rows.append(TransientToothRow(
-                    case.speed, case.friction, float(np.degrees(angle)), forces[0], width * of_force, forces[1],
-                    peaks[0], of_peak, peaks[1],
+                    speed_rpm=case.speed, friction=case.friction, tooth_angle_deg=float(np.degrees(angle)),
+                    normal_force_N=forces[0], normal_force_N_error=width * of_force, static_normal_force_N=forces[1],
+                    max_pressure_MPa=peaks[0], max_pressure_MPa_error=of_peak, static_max_pressure_MPa=peaks[1],
                 ))
         yield from sorted(rows, key=lambda row: row.tooth_angle_deg)
-
-
-def write_rows(folder: RunFolder, rows: Sequence[TransientRow], teeth: Sequence[TransientToothRow]) -> None:
-    """transient.csv and transient_teeth.csv. Raises WriteError."""
-    folder.write_text(TRANSIENT, csv_text([asdict(row) for row in rows]))
-    folder.write_text(TRANSIENT_TEETH, csv_text([asdict(row) for row in teeth]))
 
 
 def _force(result: PositionResult, tooth: int) -> float:

@@ -6,9 +6,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from evolvent.check.planned_cost import too_many_modes
+from evolvent.dynamics.figures.all import TRANSIENT_PICTURES, TRANSIENT_SCENE
 from evolvent.dynamics.results.transient.beginning import TRANSIENT_START
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
-from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE, START_PICTURE
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.folder_checks import require_unfinished
@@ -23,8 +23,8 @@ ANIMATION = "field_of_action.gif"
 UNUSED = "series_stiffness_N_per_um", "ground_damping_ratio", "mesh"
 """Keys of [dynamics]."""
 WRITTEN = (
-    SCENE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_START, TRANSIENT_FACTS,
-    *(f"pictures/{name}" for name in (PICTURE, START_PICTURE, ANIMATION)),
+    TRANSIENT_SCENE.name, TRANSIENT.name, TRANSIENT_TEETH.name, TRANSIENT_START.name, TRANSIENT_FACTS.name,
+    *(f"pictures/{picture.name}" for picture in TRANSIENT_PICTURES), f"pictures/{ANIMATION}",
 )
 
 
@@ -62,7 +62,7 @@ def prepared_folder(out: Path, resume: bool, overwrite: bool) -> list[str]:
     """Looks at the folder, and removes the cases of an earlier call with `overwrite`. Returns a sentence where there is
     nothing to go on from. Raises FolderError where files of others would be lost, or results unasked."""
     every = *WRITTEN, KEPT_CASES
-    said = require_unfinished(out, every, (KEPT_STATIC, TRANSIENT), "cases", resume, overwrite)
+    said = require_unfinished(out, every, (KEPT_STATIC, TRANSIENT.name), "cases", resume, overwrite)
     if not resume:
         RunFolder(out).remove([path.relative_to(out).as_posix() for path in sorted(out.glob(KEPT_CASES))])
     return said

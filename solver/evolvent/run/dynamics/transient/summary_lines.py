@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
-from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
+from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS, TransientFacts
 from evolvent.results.archive.error_bar_data import plus_minus
 
 FIGURES = (
@@ -21,15 +21,20 @@ STATIC = "static_"
 
 def summary_lines(folder: Path) -> Iterator[str]:
     """Each figure with its error bar where there is one, and without inertia behind it, from the folder's table."""
-    for fact in json.loads((folder / TRANSIENT_FACTS).read_text(encoding="utf-8")):
+    for fact in TRANSIENT_FACTS.read(folder):
         parts = []
         for key, name, unit, digits in FIGURES:
-            if fact[key] is None:
+            if not (value := _with_error(fact, key, digits)):
                 continue
-            value = plus_minus(fact[key], fact[f"{key}_error"] or 0.0, digits)
-            calm = fact.get(f"{STATIC}{key}")
-            without = "" if calm is None else (
-                f" (without inertia {plus_minus(calm, fact[f'{STATIC}{key}_error'] or 0.0, digits)})"
-            )
-            parts.append(f"{name} {value} {unit}".rstrip() + without)
-        yield f"{fact['speed_rpm']:g} r/min, μ = {fact['friction']:g}: {', '.join(parts)}"
+            calm = _with_error(fact, f"{STATIC}{key}", digits)
+            parts.append(f"{name} {value} {unit}".rstrip() + (f" (without inertia {calm})" if calm else ""))
+        yield f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: {', '.join(parts)}"
+
+
+def _with_error(fact: TransientFacts, key: str, digits: int) -> str:
+    """A figure with its error bar, where it is known; empty where there is none."""
+    value: float | None = getattr(fact, key, None)
+    if value is None or math.isnan(value):
+        return ""
+    bar: float | None = getattr(fact, f"{key}_error")
+    return plus_minus(value, math.nan if bar is None else bar, digits)

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
+from evolvent.dynamics.figures.all import TRANSIENT_PICTURES, TRANSIENT_SCENE
 from evolvent.dynamics.of_scene import check_positions, drive_settings
-from evolvent.dynamics.results.transient.beginning import beginnings, start_rows, write_start
+from evolvent.dynamics.results.transient.beginning import TRANSIENT_START, beginnings, start_rows
 from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures, elements_across
 from evolvent.dynamics.results.transient.errors import MovingCompanion, case_errors
-from evolvent.dynamics.results.transient.facts import sentences, transient_facts, write_facts
-from evolvent.dynamics.results.transient.kept_tables import PICTURE, SCENE, START_PICTURE
-from evolvent.dynamics.results.transient.rows import tooth_rows, transient_rows, write_rows
+from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS, sentences, transient_facts
+from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH, tooth_rows, transient_rows
 from evolvent.dynamics.transient.own_frequency import own_frequency
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.fem.backend import dolfinx_compat
@@ -23,6 +23,7 @@ from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.pressure.contact_cells import coarse_contact
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.run.dynamics.transient.cases import PairCases, PairMeshes
 from evolvent.run.dynamics.transient.checks import (
     ANIMATION,
@@ -102,39 +103,26 @@ def _written(
     ]
     pressures = case_pressures(pair.model, cases)
     errors = case_errors(pair.model, pressures, companion)
-    rows, teeth = list(transient_rows(pair.model, pressures, errors)), list(tooth_rows(pair.model, pressures, errors))
     begun = beginnings(pair.model, pressures, companion)
-    started = list(start_rows(pair.model, pressures, begun))
     natural = [own_frequency(pair, static) for static in own.static.positions]
     naturals = [natural[i] for _, i in own.tasks]
     facts = transient_facts(pair.model, pressures, errors, [bars for _, bars in begun], pair.frequencies, naturals)
 
-    def drawn() -> bytes:
-        from evolvent.dynamics.figures.transient import transient_picture  # matplotlib takes a second to import
-
-        return transient_picture(scene.title, rows, teeth, facts)
-
-    def start_drawn() -> bytes:
-        from evolvent.dynamics.figures.transient_start import start_picture
-
-        return start_picture(scene.title, started)
-
     def animated() -> bytes:
-        from evolvent.dynamics.figures.field_of_action import FieldOfAction
+        from evolvent.dynamics.figures.field_of_action import FieldOfAction  # matplotlib takes a second to import
 
         worst = int(np.argmax([fact.dynamic_factor for fact in facts]))
         return FieldOfAction(scene.title, pair.model.pair, pressures[worst]).animation()
 
     folder = RunFolder(out)
     folder.remove(WRITTEN)
-    folder.write_text(SCENE, solved.resolved_toml())
-    write_rows(folder, rows, teeth)
-    write_facts(folder, facts)
-    if started:
-        write_start(folder, started)
+    folder.write_text(TRANSIENT_SCENE.name, solved.resolved_toml())
+    TRANSIENT.write(folder, transient_rows(pair.model, pressures, errors))
+    TRANSIENT_TEETH.write(folder, tooth_rows(pair.model, pressures, errors))
+    TRANSIENT_FACTS.write(folder, facts)
+    TRANSIENT_START.write(folder, start_rows(pair.model, pressures, begun))
     output = wanted_output(scene)
-    pictures = [Picture(PICTURE, drawn)] if output.pictures else []
-    pictures += [Picture(START_PICTURE, start_drawn)] if output.pictures and started else []
+    pictures = list(from_tables(TRANSIENT_PICTURES if output.pictures else (), out))
     pictures += [Picture(ANIMATION, animated)] if output.animation else []
     section, positions = transient_section(scene), scene.sweep.positions
     said = sentences(facts, positions, section.tolerance, section.spectral_radius)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from evolvent.check.check_report import overview
@@ -11,9 +10,10 @@ from evolvent.check.problem_size import memory_megabytes, sector_sizes
 from evolvent.check.scene_warnings import scene_warnings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
+from evolvent.results.tables.table import Record
 from evolvent.scene.scene import Scene
 
-CHECK, REPORT = "check.json", "check.txt"
+REPORT = "check.txt"
 
 
 @dataclass(frozen=True)
@@ -42,14 +42,17 @@ class CheckFigures:
     """Of a run on one rank, estimated."""
 
 
+CHECK = Record("check.json", CheckFigures)
+
+
 def run_check(scene: Scene, out: Path) -> list[str]:
     """Writes the report that `evolvent check` prints, and its figures; returns the scene's warnings. Raises WriteError,
     FolderError."""
-    text = json.dumps(asdict(check_figures(scene)), ensure_ascii=False, indent=1) + "\n"
+    figures = check_figures(scene)
     with locked(out):
         folder = RunFolder(out)
         folder.write_text(REPORT, overview(scene) + "\n")
-        folder.write_text(CHECK, text)
+        CHECK.write(folder, figures)
     return list(scene_warnings(scene))
 
 
@@ -58,7 +61,9 @@ def check_figures(scene: Scene) -> CheckFigures:
     pair = scene.gear_pair()
     pinion, wheel = (gear.normal_thickness(gear.tip_diameter) for gear in pair.gears)
     return CheckFigures(
-        pair.centre_distance, pair.transverse_contact_ratio, pair.overlap_ratio, pair.total_contact_ratio,
-        1e3 * pair.normal_backlash, float(pinion), float(wheel), float(scene.hertz_estimate().peak_pressure(0.0)),
-        sum(size.dofs for size in sector_sizes(scene)), memory_megabytes(scene),
+        centre_distance_mm=pair.centre_distance, transverse_contact_ratio=pair.transverse_contact_ratio,
+        overlap_ratio=pair.overlap_ratio, total_contact_ratio=pair.total_contact_ratio,
+        normal_backlash_um=1e3 * pair.normal_backlash, pinion_tip_thickness_mm=float(pinion),
+        wheel_tip_thickness_mm=float(wheel), pitch_point_pressure_MPa=float(scene.hertz_estimate().peak_pressure(0.0)),
+        degrees_of_freedom=sum(size.dofs for size in sector_sizes(scene)), memory_MB=memory_megabytes(scene),
     )

@@ -22,7 +22,7 @@ SUMMARY, WEAR = "summary.json", "wear.json"
 
 
 def _of_check() -> list[Figure]:
-    return [Figure(each.name, CHECK, each.name) for each in fields(CheckFigures)]
+    return [Figure(each.name, CHECK.name, each.name) for each in fields(CheckFigures)]
 
 
 def _of_run() -> list[Figure]:
@@ -33,7 +33,8 @@ def _of_run() -> list[Figure]:
 
 def _of_excitation() -> list[Figure]:
     def of(name: str, quantity: str, column: str) -> Figure:
-        return Figure(name, HARMONICS, column, where={"quantity": quantity, "harmonic": 1}, error=f"{column}{ERROR}")
+        where: dict[str, str | int | float] = {"quantity": quantity, "harmonic": 1}
+        return Figure(name, HARMONICS.name, column, where=where, error=f"{column}{ERROR}")
 
     return [
         of("transmission_error_peak_to_peak_um", LOADED, "peak_to_peak"),
@@ -47,21 +48,23 @@ def _of_excitation() -> list[Figure]:
 
 def _of_dynamics() -> list[Figure]:
     def over_speed(name: str, column: str) -> Figure:
-        return Figure(name, RESPONSE, column, statistic="max")
+        return Figure(name, RESPONSE.name, column, statistic="max")
 
     return [
         over_speed("largest_dynamic_factor", "dynamic_factor"),
         over_speed("largest_equivalent_amplitude_um", "equivalent_amplitude_um"),
         over_speed("largest_separated_share", "separated_share"),
-        Figure("natural_speed_rpm", DYNAMICS, "natural_speed_rpm", error=f"natural_speed_rpm{ERROR}"),
-        Figure("mean_stiffness_N_per_um", DYNAMICS, "mean_stiffness_N_per_um", error=f"mean_stiffness_N_per_um{ERROR}"),
+        *(
+            Figure(name, DYNAMICS.name, name, error=f"{name}{ERROR}")
+            for name in ("natural_speed_rpm", "mean_stiffness_N_per_um")
+        ),
     ]
 
 
 def _of_strength() -> list[Figure]:
     def of(gear: str, name: str, method: str, error: str = "") -> Figure:
         where: Mapping[str, str | int | float] = {"gear": gear, "method": method}
-        return Figure(f"{gear}_{name}_MPa", STRENGTH, "stress_MPa", where=where, error=error)
+        return Figure(f"{gear}_{name}_MPa", STRENGTH.name, "stress_MPa", where=where, error=error)
 
     found = []
     for gear in (member.label for member in Member):

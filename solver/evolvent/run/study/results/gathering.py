@@ -11,7 +11,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from evolvent.results.tables.tables import cell_text
+from evolvent.results.tables.table import csv_rows
 from evolvent_meshes.text_files import UnreadableText, read_text
 
 ERROR = "_error"
@@ -108,17 +108,12 @@ def _read(folder: Path, name: str, rows: str) -> list[Row]:
             return []
         text = read_text(path, "table", MEGABYTES)
         if path.suffix == ".csv":
-            return [_without_quotes(row) for row in csv.DictReader(text.splitlines())]
+            return list[Row](csv_rows(text))
         content = json.loads(text)
     except (UnreadableText, OSError, ValueError, csv.Error, RecursionError):
         return []
     listed = _deep(content, rows) if rows else [content]
     return [row for row in listed if isinstance(row, Mapping)] if isinstance(listed, list) else []
-
-
-def _without_quotes(row: Row) -> Row:
-    """A row with the texts as they were before they were quoted against spreadsheets."""
-    return {name: cell_text(cell) if isinstance(cell, str) else cell for name, cell in row.items()}
 
 
 def _deep(row: Any, dotted: str) -> Any:

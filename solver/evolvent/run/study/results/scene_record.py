@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from pydantic import TypeAdapter
 
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.tables.table import Record
 from evolvent_meshes.text_files import UnreadableText, read_text
 
-RECORD = "study_scene.json"
 SCENES = "scenes"
 """Folder of the scenes' folders, below that of the study."""
 Status = Literal["done", "failed", "refused"]
@@ -36,7 +35,7 @@ class SceneRecord:
     """Wall time of the computation."""
 
 
-VALID = TypeAdapter(SceneRecord)
+RECORD, VALID = Record("study_scene.json", SceneRecord), TypeAdapter(SceneRecord)
 
 
 def scene_folder(out: Path, name: str) -> Path:
@@ -46,14 +45,13 @@ def scene_folder(out: Path, name: str) -> Path:
 
 def write_record(folder: Path, record: SceneRecord) -> None:
     """Raises WriteError, FolderError."""
-    text = json.dumps(asdict(record), ensure_ascii=False, indent=1) + "\n"
-    RunFolder(folder).write_text(RECORD, text)
+    RECORD.write(RunFolder(folder), record)
 
 
 def read_record(folder: Path) -> SceneRecord | None:
     """None where the scene was not computed to the end, or its record cannot be read."""
     try:
-        record = VALID.validate_json(read_text(folder / RECORD, "JSON", 1))
+        record = VALID.validate_json(read_text(folder / RECORD.name, "JSON", 1))
     except (UnreadableText, ValueError):  # ValueError: pydantic's, of a record that was cut off, or is none
         return None
     return record if record.name == folder.name else None

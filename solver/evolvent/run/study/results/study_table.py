@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.table import csv_text
 from evolvent.run.study.plan.study_scenes import StudyScene
 from evolvent.run.study.results.gathering import Figure, Gathering
 from evolvent.run.study.results.scene_record import SCENES, SceneRecord, scene_folder

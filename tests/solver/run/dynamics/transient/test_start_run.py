@@ -16,6 +16,7 @@ from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
+from tests.support.running.redrawn import redrawn
 
 POSITIONS = 40
 SETTINGS = (
@@ -40,6 +41,11 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("rest")
     run_transient(scene('transient.start="rest"'), folder, quiet=True)
     return folder
+
+
+def test_plot_draws_the_start_again(out: Path, tmp_path: Path) -> None:
+    """From the tables alone, byte by byte."""
+    assert redrawn(out, tmp_path) == {"transient.png", "transient_start.png"}
 
 
 def test_table_has_two_mesh_periods(out: Path) -> None:

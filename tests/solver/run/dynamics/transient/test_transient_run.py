@@ -22,6 +22,7 @@ from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
+from tests.support.running.redrawn import redrawn
 
 POSITIONS = 10
 SETTINGS = (
@@ -48,6 +49,11 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert fast.startswith("2000 r/min: the pair's own vibration")
     assert "elements across the contact (median): below 2" in few
     return folder
+
+
+def test_plot_draws_the_mesh_period_again(out: Path, tmp_path: Path) -> None:
+    """From the tables alone, byte by byte."""
+    assert redrawn(out, tmp_path) == {"transient.png"}
 
 
 def test_tables_have_every_speed_and_coefficient(out: Path) -> None:

@@ -1,0 +1,53 @@
+"""Pictures that are drawn from the tables of a folder alone, so that `evolvent plot` draws them again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Protocol
+
+from evolvent.results.drawing.picture_files import Picture
+
+
+class Readable(Protocol):
+    """A table, or another file that a picture is drawn from."""
+
+    @property
+    def name(self) -> str:
+        """Name of its file."""
+
+    def read(self, folder: Path) -> Any:
+        """Its content. Raises ArchiveError."""
+
+
+@dataclass(frozen=True)
+class TablePicture:
+    """A picture, and what it is drawn from."""
+
+    name: str
+    """Name of its file in OUT/pictures."""
+    needs: tuple[Readable, ...]
+    """Tables; where one is not there, the picture is none of the folder's."""
+    draw: str
+    """"module:function" that takes the contents of the tables and returns the picture's. Imported when it is drawn, as
+    matplotlib takes a second to import."""
+
+    def is_of(self, folder: Path) -> bool:
+        """Whether the folder has all its tables."""
+        return all((folder / table.name).is_file() for table in self.needs)
+
+    def drawn(self, folder: Path) -> bytes:
+        """Content of its file. Raises ArchiveError."""
+        module, _, function = self.draw.partition(":")
+        picture: bytes = getattr(import_module(module), function)(*(table.read(folder) for table in self.needs))
+        return picture
+
+
+def from_tables(pictures: Iterable[TablePicture], folder: Path) -> Iterator[Picture]:
+    """Those of the pictures whose tables are in the folder."""
+    for each in pictures:
+        if each.is_of(folder):
+            yield Picture(each.name, partial(each.drawn, folder))

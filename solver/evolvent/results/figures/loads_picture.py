@@ -1,0 +1,8 @@
+"""The picture of a load list, with what it is drawn from."""
+
+from __future__ import annotations
+
+from evolvent.results.drawing.table_pictures import TablePicture
+from evolvent.results.tables.load_table import LoadRuns
+
+LOADS_PICTURE = TablePicture("loads.png", (LoadRuns(),), "evolvent.results.figures.load_list:loads_picture")

@@ -121,6 +121,7 @@ def loaded_pitch(
     kept: positions on disk; where all of them are there, no gears are meshed.
     prepare: see `run_excitation`.
     """
+    asked = loads.problem.options.deflected_flanks
 
     @cache
     def gears() -> GearModel:
@@ -129,7 +130,7 @@ def loaded_pitch(
         return model
 
     def solved(deflected: bool) -> LoadedMesh:
-        store = kept.deflected if kept is not None and deflected else kept
+        store = kept.deflected if kept is not None and deflected > asked else kept
         found: Figures = on_first(comm, store.read) if store is not None else {}
 
         def keep(solved: Figures) -> None:
@@ -146,7 +147,7 @@ def loaded_pitch(
         certify_torques(found, loads.torques)
         return mesh_of(found, loads.forces, angles, deflected)
 
-    return balanced(solved, loads.problem.options.deflected_flanks)
+    return balanced(solved, asked)
 
 
 def _written(

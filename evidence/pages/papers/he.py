@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from evidence.pages.papers.he_figures import COMMAND, KEPT, REPORTS, SENSITIVITY
+from evidence.pages.papers.he_figures import KEPT, REPORTS, SENSITIVITY
+from evidence.pages.papers.he_runs import COMMAND
 from evidence.pages.papers.kept_runs.kept import kept
 
 ENDS = "_jump_up_rpm", "_jump_down_rpm"

@@ -57,7 +57,7 @@ class OperationFigures:
         number = int(np.argmin(np.abs(excitation.loaded.forces - pair.model.load)))
         found = response(pair.model, operation.period, operation.state, operation.repeats)
         return OperationFigures(
-            60.0 / (pair.teeth * operation.period), pair.natural_speed, 1e-3 * pair.mean_stiffness,
+            operation.speed, pair.natural_speed, 1e-3 * pair.mean_stiffness,
             1e-3 * float(np.mean(excitation.secant[:, number])),
             UM * float(np.ptp(excitation.unloaded_error)), UM * float(np.ptp(excitation.loaded.errors[:, number])),
             UM * found.equivalent_amplitude, pair.model.load, found.largest_force,

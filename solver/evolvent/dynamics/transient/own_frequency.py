@@ -27,7 +27,8 @@ from evolvent_meshes.errors import ResultError
 
 def own_frequency(pair: MovingPair, static: Sequence[PositionResult]) -> float:
     """Of the mode that carries most of the transmission error under a change of the mesh force [Hz]: the root of the
-    mean square of all positions of a pitch. Raises ResultError where modes give way more than the mesh at all of them."""
+    mean square of all positions of a pitch. Raises ResultError where modes give way more than the mesh at all of
+    them."""
     known = [square for square in (_square(pair, position) for position in static) if square is not None]
     if not known:
         raise ResultError(

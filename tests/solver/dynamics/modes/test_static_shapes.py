@@ -43,7 +43,7 @@ def test_natural_frequency_with_static_shapes(bore: float, rigid: float, within:
     """Problem: `evolvent dynamics` took gear bodies as rigid, so that the natural frequency of He's pair was 2 to 20 %
     too low. Right is that with natural modes of both whole rings, three of each harmonic, at the stiffness of the same
     positions: with static shapes it is within 0.3 %, with rigid bodies too low by what is said here. With a bore of a
-    tenth of the diameter, within 0.5 %; once the small system took the hubs' own motion for it, 26 times as fast."""
+    tenth of the diameter, within 0.5 %; once the hubs' own motion was taken for it, twenty times as fast."""
     scene = spur_scene(*bored(bore))
     problem, model = gear_problem(scene), model_of(scene)
     solved = sweep_pitch(model, uniform_pitch(50, 6), [0.0], initial_state([0.0]))

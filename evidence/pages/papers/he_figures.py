@@ -161,7 +161,8 @@ def _contact(runs: HeRuns, scene: Scene, series: str) -> Named:
     pair = scene.gear_pair()
     gear, pitch_point = pair.pinion, pair.pitch_point_roll_lengths[0]
     at_A = (math.sqrt(POINT_A**2 - gear.base_radius**2) - pitch_point) / gear.base_radius
-    for name, settings in (("static", ()), ("dynamic", (series, f"dynamics.operating_rpm={OPERATING_RPM:g}"))):
+    at_speed = RIGID, series, f"dynamics.operating_rpm={OPERATING_RPM:g}"
+    for name, settings in (("static", ()), ("dynamic", at_speed)):
         folder = runs.run("run", f"contact_{name}", VIBRATION, "mesh.level=standard", *settings)
         curve = engagement(read_run(folder), 0)
         known = np.isfinite(curve.max_pressure)

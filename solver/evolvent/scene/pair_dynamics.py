@@ -15,6 +15,7 @@ from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.schema.errors import InputProblem, SceneError
+from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.pair import GearPair
 
 FEWEST_POSITIONS = 3
@@ -42,6 +43,16 @@ def check_bodies(scene: Scene) -> None:
     section, pair = scene.dynamics or DynamicsSection(), scene.gear_pair()
     if section.bodies == "elastic":
         refuse_light_gears(pair, moments_of_inertia(pair, section), section.density_kg_m3, RIGID)
+
+
+def refusals(scene: Scene) -> list[str]:
+    """What `check_vibration` says of backlash and bodies; none where it says nothing."""
+    found = [str(problem)] if (problem := backlash_problem(scene)) else []
+    try:
+        check_bodies(scene)
+    except InputError as error:
+        found.append(str(error))
+    return found
 
 
 def backlash_problem(scene: Scene) -> InputProblem | None:

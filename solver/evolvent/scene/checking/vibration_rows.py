@@ -9,11 +9,10 @@ from evolvent.dynamics.pair_model import lacking_room
 from evolvent.scene.backlash import unnamed_backlash
 from evolvent.scene.checking.planned_cost import SWEEPS, shown_time, speeds_time
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import backlash_problem, check_bodies, drive_settings
+from evolvent.scene.pair_dynamics import drive_settings, refusals
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
-from evolvent_meshes.errors import InputError
 
 Line = tuple[str, str, str, tuple[str, ...]]
 """Name, symbol, unit and the values of pinion and wheel, or of both."""
@@ -50,9 +49,4 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
 
 def vibration_warnings(scene: Scene) -> list[str]:
     """Why `evolvent dynamics` would refuse a scene with the section; none where it would not."""
-    refused: list[object] = [backlash_problem(scene)]
-    try:
-        check_bodies(scene)
-    except InputError as error:
-        refused.append(error)
-    return [f"`evolvent dynamics` would refuse this scene: {why}." for why in refused if why is not None]
+    return [f"`evolvent dynamics` would refuse this scene: {why}." for why in refusals(scene)]

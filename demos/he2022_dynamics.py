@@ -6,7 +6,7 @@ The mesh force over deflection and rotation comes from a pitch solved under eigh
 models of the mesh are followed over the speed: that force, damped in contact, and the paper's, the secant stiffness at
 170 N·m times the deflection (Eqs 8, 12), with the same stiffness on the back flanks and damping in free flight, too.
 Damping: 3 % of critical at the mean stiffness. Inertia: 7.65e-3 kg·m² a gear (the paper prints 7.65 kg·mm², which are
-tonnes).
+tonnes), all of it at the bores, as in the paper: gear bodies are rigid.
 
 The bore is not printed and decides the stiffness: with 70 mm the resonance lies above the paper's 3500 r/min. The table
 says at which mean stiffness it would lie there.

@@ -13,7 +13,7 @@ from evidence import mutations
 from evidence.benchmarks.accuracy import face_load, transient_bar_costs, transient_bars
 from evidence.checkout import ROOT
 from evidence.pages import blow, outputs, promises, readme, tutorial
-from evidence.pages.papers import he, he_transient, yang, yang_fatigue, yang_transient, zhang
+from evidence.pages.papers import he, he_bodies, he_models, he_transient, yang, yang_fatigue, yang_transient, zhang
 from evidence.robustness import repeats, study_page
 
 
@@ -37,7 +37,9 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
             "points": he.points(docs), "sensitivity": he.sensitivity(docs), "speeds": he_transient.speeds_table(docs),
             "modes": he_transient.modes_table(docs), "bores": he_transient.bores_table(docs),
             "holds": he_transient.holds(docs), "steps": he_transient.steps_table(docs),
+            "models": he_models.models_table(docs),
         },
+        docs / "dynamics.md": {"bodies": he_bodies.bodies_table(docs), "limit": he_bodies.bodies_limit(docs)},
         docs / "zhang2023.md": {"points": zhang.points(docs), "differences": zhang.differences(docs)},
         docs / "fatigue.md": {"friction": yang_fatigue.friction_table(docs), "fitted": yang_fatigue.fitted_table(docs)},
         docs / "transient.md": {"bars": transient_bars.said(docs), "costs": transient_bar_costs.said(docs)},

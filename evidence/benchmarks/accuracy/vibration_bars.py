@@ -1,8 +1,8 @@
 """Error bars of the vibration of He's pair against true errors: `python -m evidence.benchmarks.accuracy.vibration_bars
 --out DIR`; with the same folder again, positions are not solved again.
 
-Level quick with 20 and 40 positions, against level standard with 80, at 60 speeds up and down. Rows within two steps of
-the speed from a jump of either run count apart: there a figure is that of one motion or of another.
+Level quick with 20 and 40 positions, against level standard with 80, at 60 speeds up and down, on rigid bodies. Rows
+within two steps of the speed from a jump of either run count apart: there a figure is that of one motion or of another.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
 
 FIGURES = "equivalent_amplitude_um", "dynamic_factor"
-SPEEDS = "dynamics.speeds=60", "dynamics.speed_rpm=[500,6000]"
+SPEEDS = "dynamics.speeds=60", "dynamics.speed_rpm=[500,6000]", 'dynamics.bodies="rigid"'
 VARIANTS = ("dynamics.damping_ratio=0.03", "dynamics.damping_ratio=0.08", 'dynamics.mesh="tangent"')
 COUNTS, REFERENCE = (20, 40), 80
 BESIDE = 2.0

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from evidence.pages.papers.he_figures import COMMAND, KEPT, REPORTS, SENSITIVITY
+from evidence.pages.papers.he_figures import KEPT, REPORTS, SENSITIVITY
+from evidence.pages.papers.he_runs import COMMAND
 from evidence.pages.papers.kept_runs.kept import kept
 
 ENDS = "_jump_up_rpm", "_jump_down_rpm"
 VARIED = {
-    "as_demo": "the demo: K/H = 1.3832e-10 mm²/N, damping ratio 0.03, computed force",
+    "as_demo": "the demo: K/H = 1.3832e-10 mm²/N, damping ratio 0.03, computed force, rigid bodies, 722 N/µm in series",
+    "elastic": "elastic bodies, 603 N/µm in series",
     "half_wear": "half K/H",
     "twice_wear": "twice K/H",
     "half_damping": "damping ratio 0.015",

@@ -2,8 +2,9 @@
 docs/he2022.md.
 
 PART points: the vibration of He's pair over the speed with several models of its mesh, bores and dampings, its contact
-at 2000 r/min, and the pair worn by 1.6 million meshes with its vibration; sensitivity: the last with what it depends
-on. By default both. `python -m evidence.pages` then writes the page.
+at 2000 r/min, and the pair worn by 1.6 million meshes with its vibration, on rigid gear bodies as in the paper; models:
+the vibration on rigid and on elastic bodies, from the same contact; sensitivity: the worn pair with what it depends on.
+By default all. `python -m evidence.pages` then writes the page.
 --few: few positions and speeds, to see that it runs; nothing is kept.
 """
 
@@ -19,7 +20,23 @@ import numpy as np
 from scipy.optimize import brentq
 
 from evidence.checkout import DEMOS, DOCS
-from evidence.pages.papers.he_runs import FEW, VIBRATION, WEAR, HeRuns, Vibration, read_csv, read_json
+from evidence.pages.papers.he_models import MODELS, models
+from evidence.pages.papers.he_runs import (
+    COMMAND,
+    FEW,
+    PAPER_RPM,
+    RIGID,
+    SURFACE,
+    VIBRATION,
+    WEAR,
+    HeRuns,
+    Vibration,
+    in_series,
+    natural_square,
+    read_csv,
+    read_json,
+    series_setting,
+)
 from evidence.pages.papers.kept_runs import kept
 from evidence.pages.papers.kept_runs.kept import Named
 from evolvent.gears.problem.gear_inertia import polar_moment
@@ -29,9 +46,8 @@ from evolvent.results.run_data import read_run
 from evolvent.scene.scene import Scene, load_scene
 
 KEPT, SENSITIVITY = "he2022/figures.csv", "he2022/sensitivity.csv"
-COMMAND = "python -m evidence.pages.papers.he_figures --out DIR"
-PAPER_RPM, OPERATING_RPM = 3500.0, 2000.0
-"""Measured resonance; the speed of the paper's Figures 14b to 22."""
+OPERATING_RPM = 2000.0
+"""Speed [r/min] of the paper's Figures 14b to 22."""
 BORES = 36, 40, 70, 100  # mm
 FINE = "sweep.positions=80"
 """For the stiffness of worn flanks: with 20 positions its mean goes in steps of 1 %."""
@@ -47,22 +63,24 @@ VARIED: Mapping[str, tuple[str, ...]] = {
     "twice_wear": tuple(f"wear.{gear}_mm2_per_N={2.0 * COEFFICIENT:g}" for gear in ("pinion", "wheel")),
     "half_damping": ("dynamics.damping_ratio=0.015",),
     "twice_damping": ("dynamics.damping_ratio=0.06",),
+    "elastic": ('dynamics.bodies="elastic"', "dynamics.series_stiffness_N_per_um=603"),
     "tangent": ('dynamics.mesh="tangent"',),
     "secant": ('dynamics.mesh="secant"',),
 }
-"""What the wear with vibration is computed with."""
+"""What the wear with vibration is computed with. Elastic bodies have the series stiffness that puts them at the paper's
+resonance, as the demo's does rigid ones: `he_models`."""
 PAPER_MODEL = 'dynamics.mesh="secant"', "dynamics.damped_apart=true"
 
 
 def figures(runs: HeRuns) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
     scene = load_scene(DEMOS / "he2022_dynamics.toml")
-    folder = runs.run("dynamics", "surface", VIBRATION)
+    folder = runs.run("dynamics", SURFACE, VIBRATION, RIGID)
     surface, secant = Vibration.read(folder), _mean_stiffness(folder, TORQUE, "secant")
     mass, stiffness = surface.facts["equivalent_mass_kg"], surface.facts["mean_stiffness_N_per_um"]
     teeth = scene.pinion.teeth
-    wanted = 1e-6 * mass * (2.0 * math.pi * PAPER_RPM * teeth / 60.0) ** 2
-    series, series_of_secant = (1.0 / (1.0 / wanted - 1.0 / k) for k in (stiffness, secant))
+    wanted = 1e-6 * mass * natural_square(scene)
+    series, series_of_secant = (in_series(wanted, k) for k in (stiffness, secant))
     yield "equivalent_mass_kg", mass
     yield "as_printed_rpm", PAPER_RPM * math.sqrt(1000.0)
     yield "bore_of_inertia_mm", _bore_of(scene)
@@ -78,9 +96,7 @@ def figures(runs: HeRuns) -> Named:
             k = _mean_stiffness(folder, scene.load.torque_Nm, kind)
             yield f"{name}_{kind}_N_per_um", k
             yield f"{name}_{kind}_rpm", _natural(k, mass, teeth)
-    at_paper_speed, paper_at_paper_speed = (
-        f"dynamics.series_stiffness_N_per_um={k:.6g}" for k in (series, series_of_secant)
-    )
+    at_paper_speed, paper_at_paper_speed = (series_setting(k) for k in (series, series_of_secant))
     cases = {
         "paper": PAPER_MODEL,
         "matched": (at_paper_speed,),
@@ -88,9 +104,9 @@ def figures(runs: HeRuns) -> Named:
         "damped": ("dynamics.damping_ratio=0.15",),
         "apart": ("dynamics.damped_apart=true",),
     }
-    yield from _over_speed("surface", surface)
+    yield from surface.figures(SURFACE)
     for name, settings in cases.items():
-        yield from _over_speed(name, Vibration.read(runs.run("dynamics", name, VIBRATION, *settings)))
+        yield from runs.vibration(name, RIGID, *settings).figures(name)
     yield from _contact(runs, scene, at_paper_speed)
     yield from _worn(runs, "wear")
     yield from _worn_stiffness(runs, scene, mass, series)
@@ -139,32 +155,14 @@ def _iso(scene: Scene, mass: float, teeth: int) -> Named:
     yield "iso_rpm", _natural(both * pair.face_width, mass, teeth)
 
 
-def _over_speed(name: str, case: Vibration) -> Named:
-    """Natural speed, jumps (the fastest and how many), superharmonics by the order of s that resonates, running up."""
-    natural = float(case.facts["natural_speed_rpm"])
-    yield f"{name}_natural_rpm", natural
-    for way in ("up", "down"):
-        jumps = case.facts[f"jumps_{way}_rpm"]
-        yield f"{name}_jump_{way}_rpm", float(max(jumps, default=math.nan))
-        yield f"{name}_jumps_{way}", float(len(jumps))
-    yield f"{name}_amplitude_um", case.largest("equivalent_amplitude_um")
-    yield f"{name}_force_ratio", case.largest("dynamic_factor")
-    yield f"{name}_separated_percent", 100.0 * case.largest("separated_share")
-    share = case.facts["heaviest_torque_share"]
-    yield f"{name}_heaviest_torque_share", math.nan if share is None else share
-    for order in (2, 3, 4):
-        at = case.peak(f"harmonic_{order}_um", 0.85 * natural / order, 1.15 * natural / order)
-        yield f"{name}_order_{order}_rpm", at
-        yield f"{name}_order_{order}_off_percent", 100.0 * (at * order / natural - 1.0)
-
-
 def _contact(runs: HeRuns, scene: Scene, series: str) -> Named:
     """One tooth's engagement under the constant torque and at the operating speed, which is the same part of the
     resonance as in the paper. series: setting of the compliance that makes it so."""
     pair = scene.gear_pair()
     gear, pitch_point = pair.pinion, pair.pitch_point_roll_lengths[0]
     at_A = (math.sqrt(POINT_A**2 - gear.base_radius**2) - pitch_point) / gear.base_radius
-    for name, settings in (("static", ()), ("dynamic", (series, f"dynamics.operating_rpm={OPERATING_RPM:g}"))):
+    at_speed = RIGID, series, f"dynamics.operating_rpm={OPERATING_RPM:g}"
+    for name, settings in (("static", ()), ("dynamic", at_speed)):
         folder = runs.run("run", f"contact_{name}", VIBRATION, "mesh.level=standard", *settings)
         curve = engagement(read_run(folder), 0)
         known = np.isfinite(curve.max_pressure)
@@ -177,7 +175,7 @@ def _contact(runs: HeRuns, scene: Scene, series: str) -> Named:
 
 
 def _worn(runs: HeRuns, name: str, *settings: str) -> Named:
-    """The pair at the paper's cycles, and its vibration over the speed there."""
+    """The pair at the paper's cycles, and its vibration over the speed there. settings: of the demo."""
     folder = runs.run("run", name, WEAR, *settings)
     rows = {float(row["cycles"]): row for row in read_csv(folder / "vibration.csv")}
     depths = {report["cycles"]: report["pinion"] for report in read_json(folder / "wear.json")["reports"]}
@@ -199,6 +197,7 @@ def _worn(runs: HeRuns, name: str, *settings: str) -> Named:
 
 PARTS: Mapping[str, tuple[Callable[[HeRuns], Named], str]] = {
     "points": (figures, KEPT),
+    "models": (models, MODELS),
     "sensitivity": (sensitivity, SENSITIVITY),
 }
 """What computes a part's figures, and where they are kept."""

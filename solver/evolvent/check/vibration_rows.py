@@ -4,7 +4,7 @@ calls."""
 from __future__ import annotations
 
 from evolvent.check.planned_cost import SWEEPS, shown_time, speeds_time
-from evolvent.dynamics.of_scene import backlash_problem, drive_settings
+from evolvent.dynamics.of_scene import drive_settings, refusals
 from evolvent.dynamics.pair_model import lacking_room
 from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
@@ -49,5 +49,4 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
 
 def vibration_warnings(scene: Scene) -> list[str]:
     """Why `evolvent dynamics` would refuse a scene with the section; none where it would not."""
-    refused = backlash_problem(scene)
-    return [] if refused is None else [f"`evolvent dynamics` would refuse this scene: {refused}."]
+    return [f"`evolvent dynamics` would refuse this scene: {why}." for why in refusals(scene)]

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Literal
 
+from evolvent.gears.problem.gear_inertia import refuse_light_gears
 from evolvent.dynamics.operating_point import OperatingPoint
-from evolvent.dynamics.pair_model import DriveSettings, geometric_backlash, lacking_room
+from evolvent.dynamics.pair_model import RIGID, DriveSettings, geometric_backlash, lacking_room
 from evolvent.gears.problem.load_limits import rounded_up
 from evolvent.scene.backlash import GIVING, unnamed_backlash
 from evolvent.scene.gear_problem import gear_problem
@@ -14,6 +15,7 @@ from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.schema.errors import InputProblem, SceneError
+from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.pair import GearPair
 
 FEWEST_POSITIONS = 3
@@ -26,11 +28,31 @@ def check_positions(scene: Scene) -> None:
         raise SceneError([InputProblem("sweep.positions", str(found), allowed, "20 are usual, 40 show each step")])
 
 
-def check_backlash(scene: Scene) -> None:
-    """Raises SceneError where nobody has named a backlash, or the unloaded errors of the flanks leave no room in it:
-    known by geometry alone, before any contact is solved."""
+def check_vibration(scene: Scene) -> None:
+    """Raises SceneError where the vibration of a scene has too few positions, where nobody has named a backlash, or the
+    unloaded errors of the flanks leave no room in it; InputError where gear bodies that give way have less inertia
+    than they are drawn with. All of it is known by geometry alone, before any contact is solved."""
+    check_positions(scene)
     if problem := backlash_problem(scene):
         raise SceneError([problem])
+    check_bodies(scene)
+
+
+def check_bodies(scene: Scene) -> None:
+    """Raises InputError where a gear's inertia is below that of its body, all of which moves where it is elastic."""
+    section, pair = scene.dynamics or DynamicsSection(), scene.gear_pair()
+    if section.bodies == "elastic":
+        refuse_light_gears(pair, moments_of_inertia(pair, section), section.density_kg_m3, RIGID)
+
+
+def refusals(scene: Scene) -> list[str]:
+    """What `check_vibration` says of backlash and bodies; none where it says nothing."""
+    found = [str(problem)] if (problem := backlash_problem(scene)) else []
+    try:
+        check_bodies(scene)
+    except InputError as error:
+        found.append(str(error))
+    return found
 
 
 def backlash_problem(scene: Scene) -> InputProblem | None:
@@ -61,12 +83,11 @@ def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
 
 def operating_point(scene: Scene) -> OperatingPoint | None:
     """Under whose mesh force the contact is computed; None where it is computed under the constant torque.
-    Raises SceneError as `check_positions` and `check_backlash`."""
+    Raises as `check_vibration`."""
     section = scene.dynamics
     if section is None or section.operating_rpm is None:
         return None
-    check_positions(scene)
-    check_backlash(scene)
+    check_vibration(scene)
     shares = tuple(sorted(percent / 100.0 for percent in section.torque_percents))
     settings = drive_settings(scene.gear_pair(), section)
     of_several: Literal["mean", "largest"] = "largest" if scene.wear is None else "mean"

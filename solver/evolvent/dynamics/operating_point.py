@@ -113,6 +113,11 @@ class Operation:
         return self.forces[1] * self.drive.model.load / float(self.excitation.loaded.forces[-1])
 
     @property
+    def speed(self) -> float:
+        """Of the pinion [r/min]."""
+        return 60.0 / (self.drive.teeth * self.period)
+
+    @property
     def state(self) -> Floats:
         """s [mm] and ṡ [mm/s] (2,) at phase 0."""
         return self.motion.state

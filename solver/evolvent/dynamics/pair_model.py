@@ -22,6 +22,8 @@ from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.pair import GearPair
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
+RIGID = 'dynamics.bodies = "rigid"'
+"""The setting without elastic bodies, for remedies."""
 NANOMETRE = 1e-6
 """To which unloaded errors are right [mm]; no backlash is asked for less."""
 OVERLAP = 0.01
@@ -32,7 +34,7 @@ class TooSoftBodies(ResultError):
     """Static shapes of gear bodies that give way more than the whole mesh does."""
 
     def __init__(self, what: str) -> None:
-        super().__init__(f'{what}; take dynamics.bodies = "rigid", or evolvent transient')
+        super().__init__(f"{what}; take {RIGID}, or evolvent transient")
 
 
 @dataclass(frozen=True)

@@ -79,13 +79,15 @@ class SmallSystem:
 
     def natural(self, mesh: int, stiffness: float) -> tuple[float, float]:
         """ω [rad/s] of small motions in which one mesh alone has a stiffness [N/mm] where its force acts: of the motion
-        that carries most of the static transmission error, and of the next faster one in which the mesh has a part;
-        infinite where there is none."""
+        that carries most of the transmission error under a change of the mesh force, and of the next faster one in
+        which the mesh has a part; infinite where there is none. A light hub on a soft web, which the torque at its bore
+        turns most, is not taken for the pair's own motion."""
         g = self.closing[mesh]
         squares, shapes = la.eigh(self.stiffness + stiffness * np.outer(g, g), self.mass)
         least = RIGID * max(float(squares[-1]), 1.0)
         safe = np.maximum(squares, least)
-        own = int(np.argmax(np.where(squares > least, (self.reading[mesh] @ shapes) ** 2 / safe, 0.0)))
+        carried = (g @ shapes) * (self.reading[mesh] @ shapes) / safe
+        own = int(np.argmax(np.where(squares > least, carried, 0.0)))
         meshing = stiffness * (g @ shapes) ** 2 / safe > MESHING
         faster = squares[own + 1 :][meshing[own + 1 :]]
         return float(np.sqrt(squares[own])), float(np.sqrt(faster[0])) if len(faster) else np.inf

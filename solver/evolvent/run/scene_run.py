@@ -10,8 +10,9 @@ from pathlib import Path
 
 from mpi4py import MPI
 
+from evolvent.dynamics.body_sentences import bodies_said
 from evolvent.dynamics.figures.all import OPERATION_PICTURE
-from evolvent.dynamics.operating_point import Operation
+from evolvent.dynamics.operating_point import OperatingPoint, Operation
 from evolvent.dynamics.operation_figures import OperationFigures, operation_warnings
 from evolvent.dynamics.results.operation import write_operation
 from evolvent.dynamics.under_mesh_force import UnderMeshForce
@@ -78,7 +79,7 @@ def run_scene(
                 vibrating = UnderMeshForce(point, prepare or prepare_model, partial(run.progress.stage, VIBRATION))
                 run = replace(run, prepare=vibrating)
             _log_beginning(run, solved)
-            _compute(run, solved, completed)
+            _compute(run, solved, completed, point)
             if vibrating is not None and vibrating.operation is not None:
                 _write_operation(run, solved, vibrating.operation)
 
@@ -100,12 +101,12 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
         run.log.warning(sentence)
 
 
-def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None) -> None:
-    """Computes and writes everything that the scene asks for."""
+def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None, point: OperatingPoint | None) -> None:
+    """Computes and writes everything that the scene asks for. point: of its vibration, where it has one."""
     if scene.wear is None:
         scene, record = sweep_scene(run, scene, completed)
     else:
-        record = wear_scene(run, scene)
+        record = wear_scene(run, scene, point)
     companion = None
     if wanted_output(scene).error_bars:
         run.progress.stage(ERROR_BARS)
@@ -136,7 +137,10 @@ def _write_operation(run: RunContext, scene: Scene, operation: Operation) -> Non
         if wanted_output(scene).pictures:
             log_pictures(draw(from_tables([OPERATION_PICTURE], run.folder.out), run.folder), run.log)
 
-        for sentence in operation_warnings([OperationFigures.of(operation)]):
+        speed = operation.speed
+        for sentence in (
+            *bodies_said(operation.drive, speed, speed), *operation_warnings([OperationFigures.of(operation)])
+        ):
             run.log.warning(sentence)
 
     run.on_first(written)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.operation_figures import operation_warnings
 from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
@@ -24,7 +25,7 @@ from evolvent.run.context import RunContext
 from evolvent.run.output import facts_of, log_pictures
 from evolvent.run.pitch_run import SweepRecord
 from evolvent.run.progress import CYCLES
-from evolvent.run.start import checked_meshes, clear, elastic_point, prepare_gears, timings_of
+from evolvent.run.start import checked_meshes, clear, prepare_gears, timings_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.wear import WearSection
@@ -42,11 +43,11 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 
-def wear_scene(run: RunContext, scene: Scene) -> SweepRecord:
+def wear_scene(run: RunContext, scene: Scene, operating: OperatingPoint | None) -> SweepRecord:
     """Solves and archives all blocks of a scene with [wear]. Collective; raises what `run_scene` does.
 
     The folder gets the unworn pair, as a sweep leaves it, and a subfolder worn_N with the pair after N cycles for each
-    report.
+    report. operating: where the pair vibrates as it wears; None: it wears under the constant torque.
     """
     wear, begin, archive = scene.wear, time.perf_counter(), run.archive(scene)
     assert wear is not None
@@ -60,7 +61,7 @@ def wear_scene(run: RunContext, scene: Scene) -> SweepRecord:
     preparation = prepare_gears(run, scene)
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     μ = scene.contact.friction[0]
-    motion, operating = mesh_motion_of(run, scene), elastic_point(scene, run.comm)
+    motion = mesh_motion_of(run, scene)
     gears = GearWear(preparation.model, pitch, μ, law_of(wear), run.comm, motion, operating)
     meshes = MeshRecord.of([MeshedGear.of(body) for body in preparation.model.bodies])
     run.progress.stage(CYCLES, round(wear.cycles), round(kept.cycles if kept else 0.0))

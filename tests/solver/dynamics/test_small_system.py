@@ -40,6 +40,20 @@ def test_natural_frequency_of_hubs_and_rims() -> None:
     assert system.compliance(g, b) == pytest.approx(-whole * share * (1.0 - share), rel=1e-12)
 
 
+@pytest.mark.parametrize("hub", [1e-3, 0.1])
+def test_light_hubs_on_soft_springs_are_not_the_pair_on_its_mesh(hub: float) -> None:
+    """Springs that give way twice what the mesh does, and light hubs: these turn most under a torque at the bores, but
+    what the mesh excites are both rims against each other. Exact: the lower root of the same equation, to 1e-9; once it
+    was the upper one, at a hub of a thousandth of the rim ten times as fast."""
+    mesh = 500e3
+    spring, inertia = RADIUS**2 * mesh, hub * RIM
+    mass = np.array([[inertia + RIM, RIM], [RIM, RIM]])
+    light = GearShapes(mass, np.diag([0.0, spring]), np.array([RADIUS, RADIUS]))
+    first = spring + 2.0 * RADIUS**2 * mesh
+    roots = np.roots([RIM * inertia, -(first * inertia + spring * RIM), first * spring - spring**2])
+    assert pair_system(light, light).natural(0, mesh)[0] == pytest.approx(np.sqrt(roots.min()), rel=1e-9)
+
+
 def test_unequal_gears_do_not_mind_their_order() -> None:
     """Pinion and wheel exchanged: the same natural frequency and mass, to 1e-12; a wheel that is a hundred times
     stiffer and heavier leaves the pinion's alone, to 2 %."""

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from evolvent.commands.app import Exit
 from evolvent.results.archive.archive import Archive
 from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.run.redraw import FROM_TABLES
+from evolvent.run.start import elastic_point
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
 from evolvent_meshes.arrays import Floats
+from tests.support.checkout import ROOT
 from tests.support.running.processes import BROKEN_RUN, Run
 
-SCENE = "demos/he2022_wear.toml"
+SCENE, VIBRATING = "demos/he2022_wear.toml", ROOT / "demos/he2022_dynamics.toml"
 OUTPUT = tuple(f"output.{name}=false" for name in ("pictures", "animation", "fields", "error_bars"))
 SETTINGS = (
     *OUTPUT, "sweep.positions=8", "dynamics.torque_percents=[25,100,200]", "wear.cycles=4e5",
@@ -77,6 +81,25 @@ def test_positions_have_the_force_of_their_phase(whole: Path) -> None:
     assert force == pytest.approx(np.interp(phases, motion["phase"], motion["force_N"]), rel=1e-3)
     assert facts["smallest_force_N"] * 0.999 < force.min() < force.max() < facts["largest_force_N"] * 1.001
     assert np.ptp(force) > 0.2 * facts["static_force_N"]
+
+
+def test_rigid_bodies_are_said_in_a_run(whole: Path) -> None:
+    """The demo of wear has the rigid bodies of its paper: the log says what that leaves out."""
+    assert 'dynamics.bodies = "rigid": all inertia is at the bores' in (whole / "run.log").read_text(encoding="utf-8")
+
+
+def test_a_pair_at_speed_has_the_bodies_of_its_scene() -> None:
+    """`evolvent run` at an operating speed: elastic bodies by default, with the inertia that the scene gives, none
+    where they are rigid; without such a speed there is no vibration."""
+    bare = load_scene(VIBRATING, ["mesh.level=quick"])
+    assert elastic_point(bare, MPI.COMM_SELF) is None
+    at_speed = ["mesh.level=quick", "dynamics.operating_rpm=2000"]
+    elastic, rigid = (
+        elastic_point(load_scene(VIBRATING, [*at_speed, *more]), MPI.COMM_SELF)
+        for more in ([], ['dynamics.bodies="rigid"'])
+    )
+    assert elastic is not None and rigid is not None and rigid.settings.bodies is None
+    assert elastic.settings.bodies is not None and replace(elastic.settings, bodies=None) == rigid.settings
 
 
 def test_each_report_is_a_scene_of_its_own(whole: Path) -> None:

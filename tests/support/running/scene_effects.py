@@ -83,7 +83,7 @@ OTHERS = {
     "dynamics.backlash_um": "40.0", "dynamics.density_kg_m3": "7200.0", "dynamics.pinion_inertia_kg_m2": "1e-3",
     "dynamics.wheel_inertia_kg_m2": "1e-2", "dynamics.series_stiffness_N_per_um": "500.0",
     "dynamics.operating_rpm": "3000.0", "dynamics.coming": '"down"', "dynamics.histories_rpm": "[2000.0]",
-    "dynamics.bodies": '"elastic"', "dynamics.map_percents": "[50.0, 150.0]", "dynamics.map_speeds": "50",
+    "dynamics.bodies": '"rigid"', "dynamics.map_percents": "[50.0, 150.0]", "dynamics.map_speeds": "50",
     "dynamics.base_pitch_deviation_um": "5.0", "dynamics.profile_deviation_um": "5.0", "dynamics.tolerance_class": "7",
     "dynamics.flank_surface": '"cast_iron"', "dynamics.contact_endurance_MPa": "1400.0",
     "transient.speeds_rpm": "[2000.0]", "transient.drive": '"constant_speed"', "transient.start": '"rest"',

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,15 +25,18 @@ class Runs:
 
     out: Path
 
-    def ended(self, name: str, leaves: str, *words: object) -> tuple[Path, Cost]:
-        """The folder of a run and what it took. words: of the command. leaves: its last file. Raises RunFailed, also
-        where the run that has ended there had other words. Whether program and scene have changed since is not looked
-        at: take another folder then."""
+    def ended(self, name: str, leaves: str, *words: object, after: str = "") -> tuple[Path, Cost]:
+        """The folder of a run and what it took. words: of the command. leaves: its last file. after: an ended run on
+        a copy of whose folder this one begins, where the words have it go on. Raises RunFailed, also where the run that
+        has ended there had other words. Whether program and scene have changed since is not looked at: take another
+        folder then."""
         folder, cost = self.out / name, self.out / f"{name}.cost.csv"
-        if (folder / leaves).exists() and cost.exists():
+        if cost.exists() and (folder / leaves).exists():
             self._require_same(name, words)
         else:
             self.out.mkdir(parents=True, exist_ok=True)
+            if after:
+                shutil.copytree(self.out / after, folder, dirs_exist_ok=True)
             took = run(Command((*map(str, words), "--out", str(folder)), ROOT, self.out / f"{name}.log",
                                time_limit=TIME_LIMIT))
             self._words(name).write_text(self._told(words), encoding="utf-8")

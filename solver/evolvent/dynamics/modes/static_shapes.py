@@ -19,12 +19,12 @@ from evolvent.dynamics.modes.gear_modes import sector_matrices
 from evolvent.dynamics.modes.mean_load import mean_load
 from evolvent.dynamics.modes.mode_meshes import body_mesh
 from evolvent.dynamics.modes.ring_modes import SectorMatrices, harmonics, phase_of
-from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.dynamics.pair_model import RIGID, DriveSettings
 from evolvent.dynamics.small_system import GearShapes
 from evolvent.fem.surface import surface_of
 from evolvent.gears.condensed_gear import sector_body
 from evolvent.gears.kinematics import spin
-from evolvent.gears.problem.gear_inertia import TONNE_PER_MM3, refuse_less_than_the_body
+from evolvent.gears.problem.gear_inertia import TONNE_PER_MM3, refuse_light_gears
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
@@ -59,12 +59,11 @@ def static_shapes(problem: GearProblem, member: Member, density: float) -> GearS
 def with_elastic_bodies(settings: DriveSettings, problem: GearProblem, density: float) -> DriveSettings:
     """The same with gear bodies that give way. density: [kg/m³].
 
-    Raises as `static_shapes`, and InputError for an inertia below that of a body.
+    Raises InputError for an inertia below that of a body, before anything is meshed, and as `static_shapes`.
     """
+    refuse_light_gears(problem.pair, settings.inertias, density, RIGID)
     width = problem.pair.face_width if problem.is_plane else 1.0
     pinion, wheel = (static_shapes(problem, member, TONNE_PER_MM3 * density).scaled(width) for member in Member)
-    for member, inertia, gear in zip(Member, settings.inertias, (pinion, wheel)):
-        refuse_less_than_the_body(member, inertia, float(gear.mass[0, 0]), 'dynamics.bodies = "rigid"')
     return replace(settings, bodies=(pinion, wheel))
 
 

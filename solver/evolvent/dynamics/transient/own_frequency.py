@@ -26,8 +26,9 @@ from evolvent_meshes.errors import ResultError
 
 
 def own_frequency(pair: MovingPair, static: Sequence[PositionResult]) -> float:
-    """Of the mode that carries most of the static transmission error [Hz]: the root of the mean square of all positions
-    of a pitch. Raises ResultError where modes give way more than the mesh at all of them."""
+    """Of the mode that carries most of the transmission error under a change of the mesh force [Hz]: the root of the
+    mean square of all positions of a pitch. Raises ResultError where modes give way more than the mesh at all of
+    them."""
     known = [square for square in (_square(pair, position) for position in static) if square is not None]
     if not known:
         raise ResultError(
@@ -47,7 +48,7 @@ def _square(pair: MovingPair, position: PositionResult) -> float | None:
     jump = np.append(-s, pair.lever)
     stiffness = np.diag(np.append(Ω2, 0.0)) + rest * np.outer(jump, jump)
     squares, shapes = eigh(stiffness, pair.system.mass)
-    return float(squares[np.argmax(shapes[-1] ** 2 / squares)])
+    return float(squares[np.argmax((jump @ shapes) * shapes[-1] / squares)])
 
 
 def _modal_forces(pair: MovingPair, position: PositionResult) -> Floats:

@@ -17,7 +17,7 @@ POINTS = 2001
 TONNE_PER_MM3 = 1e-12
 """One kg/m³."""
 ROUNDING = 1e-3
-"""By which the meshed body may have more inertia than the drawn one."""
+"""By which a meshed body may have more inertia than the drawn one, and a given value less than either."""
 
 
 def polar_moment(gear: GearParameters, density: float) -> float:
@@ -65,13 +65,22 @@ def equivalent_mass(pair: GearPair, inertias: tuple[float, float]) -> float:
     return pinion * wheel / (pinion * pair.wheel.base_radius**2 + wheel * pair.pinion.base_radius**2)
 
 
+def refuse_light_gears(pair: GearPair, inertias: tuple[float, float], density: float, remedy: str) -> None:
+    """Raises InputError where pinion or wheel has less moment of inertia [t·mm²] than its body as it is drawn.
+
+    density: [kg/m³]. remedy: as in `refuse_less_than_the_body`.
+    """
+    for member, gear, inertia in zip(Member, pair.gears, inertias):
+        refuse_less_than_the_body(member, inertia, polar_moment(gear, density), remedy)
+
+
 def refuse_less_than_the_body(member: Member, inertia: float, body: float, remedy: str) -> None:
-    """Raises InputError for an inertia that is less than that of the meshed body, all of whose mass moves [t·mm²].
+    """Raises InputError for an inertia that is less than that of the gear's body, all of whose mass moves [t·mm²].
     remedy: the setting that has all inertia at the bore."""
     if inertia < (1.0 - ROUNDING) * body:
         refuse(
             f"dynamics.{member.label}_inertia_kg_m2",
-            f"at least that of the meshed body, {1e-3 * body:.4g} kg m², which gives way with all of its mass",
+            f"at least that of the gear's body, {1e-3 * body:.4g} kg m², which gives way with all of its mass",
             Words(f"{1e-3 * inertia:.4g} kg m²"),
             f"delete the key for the body's own, enlarge the bore, or take {remedy}",
         )

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from mpi4py import MPI
 
+from evolvent.dynamics.body_sentences import bodies_said
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.figures.all import VIBRATION_PICTURES
-from evolvent.dynamics.of_scene import check_backlash, check_positions, drive_settings
+from evolvent.dynamics.of_scene import check_vibration, drive_settings
 from evolvent.dynamics.oscillator.response import MESHES
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
@@ -57,10 +58,6 @@ from evolvent.scene.skips import wanted_output
 from evolvent.scene.vibration_limits import doubtful
 
 BODIES, SPEEDS, SPEEDS_AGAIN, MAP = "gear bodies", "speeds", "speeds, error bars", "torque map"
-BODY_HARMONICS, NEAR = (1, 2, 3), 0.1
-"""Mesh harmonics that excite enough to matter, and the part of a speed within which they do: with the third one at
-17.5 kHz, a body of 18.4 kHz, the transmission error of He's pair was 13 % too small at 0.95 of
-that speed, 1 % at 1.09 of it."""
 
 
 def run_dynamics(
@@ -78,8 +75,7 @@ def run_dynamics(
     Raises as `run_excitation`, and NoSteadyState.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
-    check_positions(scene)
-    check_backlash(scene)
+    check_vibration(scene)
     section = scene.dynamics or DynamicsSection()
     loads = scene_torques(scene, section.torque_percents)
     fine, coarse = kept_positions(loads, out, resume)
@@ -151,17 +147,6 @@ def _over_torque(
     return torque_map(excitation, problem, settings, loads, speeds, progress.advance)
 
 
-def body_resonances(vibrating: Drive, fastest: float) -> list[str]:
-    """That low mesh harmonics excite the bodies' own vibration, which is left out, at speeds up to the fastest one
-    [r/min]; none where none does."""
-    near = [(n, vibrating.body_speed(n)) for n in BODY_HARMONICS if (1.0 - NEAR) * vibrating.body_speed(n) < fastest]
-    if not near:
-        return []
-    places = ", ".join(f"{speed:.0f} r/min (mesh harmonic {number})" for number, speed in near)
-    return [
-        f"gear bodies: their own vibration of {vibrating.body_frequency:.0f} Hz on the mesh is left out. Within a "
-        f"tenth of {places} motion and forces are larger than computed; evolvent transient has it"
-    ]
 
 
 def _warnings(
@@ -169,13 +154,7 @@ def _warnings(
 ) -> list[str]:
     """What a reader of the results has to know."""
     found, deflection = [], vibrating.model.load / vibrating.mean_stiffness
-    if settings.bodies is None:
-        found.append(
-            'dynamics.bodies = "rigid": all inertia is at the bores, behind what gives way between bore and mesh, so '
-            "that natural speed, resonances and jumps lie too low, the more the smaller the bores "
-            '(docs/dynamics.md, gear bodies); "elastic" has the inertia where it is'
-        )
-    found += body_resonances(vibrating, speed_of(vibrating, float(swept.periods[-1])))
+    found += bodies_said(vibrating, *(speed_of(vibrating, float(swept.periods[end])) for end in (0, -1)))
     if settings.backlash < deflection:
         found.append(
             f"dynamics.backlash_um: found {known.backlash_um:.3g} µm, less than the static deflection of "

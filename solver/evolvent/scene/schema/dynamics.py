@@ -84,9 +84,9 @@ class DynamicsSection(SceneSection):
     bodies: Literal["elastic", "rigid"] = key(
         "the gear bodies: they give way with their inertia where it is, or they are rigid, with all inertia at the "
         "bores and what gives way between bore and mesh in front of it, so that a small bore has too low a natural "
-        "speed",
+        "speed, as in papers' models with one degree of freedom",
         '"elastic" or "rigid"',
-        default="rigid",
+        default="elastic",
     )
     torque_percents: tuple[float, ...] = key(
         "torques of the force surface, in percent of load.torque_Nm; beyond the heaviest it goes on straight",

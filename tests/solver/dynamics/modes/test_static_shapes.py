@@ -33,16 +33,17 @@ def bored(bore: float) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize(
-    ("bore", "rigid"),
+    ("bore", "rigid", "within"),
     [
-        (36.0, 0.19), pytest.param(70.0, 0.055, marks=pytest.mark.slow),
-        pytest.param(100.0, 0.020, marks=pytest.mark.slow),
+        (16.0, 0.464, 5e-3), (36.0, 0.19, 3e-3), pytest.param(70.0, 0.055, 3e-3, marks=pytest.mark.slow),
+        pytest.param(100.0, 0.020, 3e-3, marks=pytest.mark.slow),
     ],
 )
-def test_natural_frequency_with_static_shapes(bore: float, rigid: float) -> None:
+def test_natural_frequency_with_static_shapes(bore: float, rigid: float, within: float) -> None:
     """Problem: `evolvent dynamics` took gear bodies as rigid, so that the natural frequency of He's pair was 2 to 20 %
     too low. Right is that with natural modes of both whole rings, three of each harmonic, at the stiffness of the same
-    positions: with static shapes it is within 0.3 %, with rigid bodies too low by what is said here."""
+    positions: with static shapes it is within 0.3 %, with rigid bodies too low by what is said here. With a bore of a
+    tenth of the diameter, within 0.5 %; once the hubs' own motion was taken for it, twenty times as fast."""
     scene = spur_scene(*bored(bore))
     problem, model = gear_problem(scene), model_of(scene)
     solved = sweep_pitch(model, uniform_pitch(50, 6), [0.0], initial_state([0.0]))
@@ -57,7 +58,7 @@ def test_natural_frequency_with_static_shapes(bore: float, rigid: float) -> None
     stiffness = model.width_factor * float(np.mean([position.stiffness for position in static]))
     body = one_degree(system, stiffness)
     found = np.sqrt(1.0 / (1.0 / stiffness - body.stiffer) / body.mass) / (2.0 * np.pi)
-    assert found == pytest.approx(exact, rel=3e-3)
+    assert found == pytest.approx(exact, rel=within)
     assert np.sqrt(stiffness / system.mass_at(0)) / (2.0 * np.pi) == pytest.approx((1.0 - rigid) * exact, rel=5e-3)
 
 

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import csv
 import json
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from evolvent.check.check_report import overview
 from evolvent.commands.app import main
-from evolvent.dynamics.of_scene import backlash_problem, drive_settings, operating_point
+from evolvent.dynamics.of_scene import drive_settings
 from evolvent.dynamics.pair_model import geometric_backlash
-from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.vibration import run_dynamics
-from evolvent.run.scene_run import run_scene
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.gears.gear import GearParameters
@@ -48,8 +44,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With the force surface."""
     folder, one = tmp_path_factory.mktemp("dynamics"), scene()
     assert one.dynamics is not None
-    rigid, said = run_dynamics(one, folder, quiet=True)
-    assert rigid.startswith('dynamics.bodies = "rigid": all inertia is at the bores')
+    bodies, said = run_dynamics(one, folder, quiet=True)
+    assert bodies.startswith("gear bodies: their own vibration of") and "(mesh harmonic 3)" in bodies
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")
     return folder
 
@@ -60,12 +56,17 @@ def test_plot_draws_the_vibration_again(out: Path, tmp_path: Path) -> None:
 
 
 def test_resonance_is_where_stiffness_and_inertia_put_it(out: Path) -> None:
-    """The natural speed is √(k/m_e) 60/(2π z), and at 60 speeds the mesh force is largest within a fifth of it running
-    up; above it the pair is isolated: K_v falls towards 1."""
+    """The natural speed is √(k/m) 60/(2π z), k and m those in motion, as bodies are elastic by default, and beyond that
+    of m_e at the bores; at 60 speeds the mesh force is largest within a fifth of it running up; above it the pair is
+    isolated: K_v falls towards 1."""
     known = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))
-    assert known["equivalent_mass_kg"] == pytest.approx(0.7701, rel=1e-4)
-    natural = np.sqrt(1e6 * known["mean_stiffness_N_per_um"] / known["equivalent_mass_kg"]) * 60.0 / (2.0 * np.pi * 50)
+    assert known["equivalent_mass_kg"] == pytest.approx(0.7701, rel=1e-4) and known["bodies"] == "elastic"
+    natural, rigid = (
+        np.sqrt(1e6 * known[k] / known[m]) * 60.0 / (2.0 * np.pi * 50)
+        for k, m in (("moving_stiffness_N_per_um", "moving_mass_kg"), ("mean_stiffness_N_per_um", "equivalent_mass_kg"))
+    )
     assert known["natural_speed_rpm"] == pytest.approx(natural, rel=1e-9)
+    assert known["rigid_natural_speed_rpm"] == pytest.approx(rigid, rel=1e-9) and 1.03 < natural / rigid < 1.08
     lines = rows(out / "response.csv")
     assert [line["way"] for line in lines] == ["up"] * 60 + ["down"] * 60
     up = lines[:60]
@@ -73,6 +74,19 @@ def test_resonance_is_where_stiffness_and_inertia_put_it(out: Path) -> None:
     assert float(up[int(np.argmax(factor))]["speed_rpm"]) == pytest.approx(natural, rel=0.2)
     assert 1.0 < factor[-1] < 1.2
     assert {line["repeats"] for line in lines} == {"1"}
+
+
+def test_rigid_bodies_have_all_inertia_at_the_bores(tmp_path: Path) -> None:
+    """`dynamics.bodies = "rigid"`, once the default: the natural speed is √(k/m_e) 60/(2π z), the transmission error s
+    itself, and a sentence says what that leaves out."""
+    given = 'dynamics.bodies="rigid"', 'dynamics.mesh="tangent"', "dynamics.speeds=2"
+    said = run_dynamics(scene(*given), tmp_path, quiet=True)
+    assert said[0].startswith('dynamics.bodies = "rigid": all inertia is at the bores')
+    known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
+    natural = np.sqrt(1e6 * known["mean_stiffness_N_per_um"] / known["equivalent_mass_kg"]) * 60.0 / (2.0 * np.pi * 50)
+    assert known["natural_speed_rpm"] == known["rigid_natural_speed_rpm"] == pytest.approx(natural, rel=1e-9)
+    assert known["moving_mass_kg"] == known["equivalent_mass_kg"] and known["body_frequency_Hz"] is None
+    assert known["bodies"] == "rigid"
 
 
 def test_pairs_jump_at_the_folds(out: Path) -> None:
@@ -175,7 +189,7 @@ def test_settings_follow_from_the_gears() -> None:
 def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
     """That of the reference centre distance, none: the key and the static deflection are named."""
     one = scene("dynamics.backlash_um=0", 'dynamics.mesh="secant"', "dynamics.speeds=2")
-    _, said = run_dynamics(one, tmp_path, quiet=True)
+    (said,) = [each for each in run_dynamics(one, tmp_path, quiet=True) if "backlash" in each]
     known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
     deflection = known["static_force_N"] / known["mean_stiffness_N_per_um"]
     assert said.startswith(f"dynamics.backlash_um: found 0 µm, less than the static deflection of {deflection:.3g} µm")
@@ -241,45 +255,3 @@ def test_wear_does_not_keep_a_scene_from_its_vibration(tmp_path: Path) -> None:
     words = [word for setting in (*QUIET, *SETTINGS) for word in ("--set", setting)]
     assert main(["dynamics", str(ROOT / "demos/he2022_wear.toml"), "--out", str(tmp_path), "--quiet", *words]) == 0
     assert rows(tmp_path / "response.csv")
-
-
-def test_too_little_backlash_is_said_before_contact_is_solved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Flanks that stand 10 µm proud on both sides, backlash 0: refused by geometry alone, with status 2, and no file is
-    left; `check` has the same figure, and with what is asked for the scene is taken."""
-    (tmp_path / "proud.csv").write_text("diameter_mm,depth_um\n140,-10\n157,-10\n")
-    proud = f'pinion.flank_csv="{tmp_path / "proud.csv"}"'
-    monkeypatch.setattr(excitation, "prepare_model", None)
-    with pytest.raises(SceneError, match=r"found 0 µm, 20(\.\d)? µm less than unloaded errors") as error:
-        run_dynamics(scene(proud, "dynamics.backlash_um=0"), tmp_path / "out", quiet=True)
-    assert not (tmp_path / "out").exists()
-    assert f"{error.value}" in overview(scene(proud, "dynamics.backlash_um=0"))
-    least = re.search(r"from (\S+) µm on", str(error.value))
-    assert least and backlash_problem(scene(proud, f"dynamics.backlash_um={least[1]}")) is None
-
-
-@pytest.mark.parametrize(
-    ("settings", "named"),
-    [
-        ((), False),  # the reference centre distance
-        (("pair.centre_distance_mm=150.0005",), False),  # rounding
-        (("dynamics.backlash_um=60",), True),
-        (("pair.centre_distance_mm=150.1",), True),
-        (("pinion.tooth_thickness_allowance_um=-60",), True),
-    ],
-)
-def test_somebody_names_the_backlash(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, settings: tuple[str, ...], named: bool
-) -> None:
-    """A scene whose vibration would be that of a pair without backlash, because nobody has given one, is refused before
-    anything is computed, by `evolvent dynamics` and by `evolvent run` at a speed, with the keys that give one. Once, it
-    was computed without any, and showed no free flight and no jump."""
-    given = load_scene(ROOT / "demos/he2022.toml", [*QUIET, "dynamics.operating_rpm=2000", *settings])
-    monkeypatch.setattr(excitation, "prepare_model", None)
-    assert (backlash_problem(given) is None) == named
-    if named:
-        assert operating_point(given) is not None
-        return
-    for compute in (run_dynamics, run_scene):
-        with pytest.raises(SceneError, match=r"dynamics\.backlash_um: found nothing.*tooth_thickness.*centre_dist"):
-            compute(given, tmp_path / "out", quiet=True)
-        assert not (tmp_path / "out").exists()

@@ -42,7 +42,8 @@ class TransientFacts:
     """The lowest of them; null without modes."""
     natural_frequency_Hz: float
     """Of the rotation of the gears on their mesh, by its mean tangent stiffness in statics, with the modes of both
-    bodies: of that natural mode of the pair which carries most of the static transmission error."""
+    bodies: of that natural mode of the pair which carries most of the transmission error under a change of the mesh
+    force."""
     natural_frequency_Hz_error: float
     """Its estimated error by the mesh and the spacing of positions; null where there is no coarse companion
     (`output.error_bars`)."""

@@ -37,3 +37,11 @@ def test_a_run_of_another_command_is_not(tmp_path: Path) -> None:
     with pytest.raises(RunFailed, match="unknown command"):
         ended(tmp_path, "a")
     assert (tmp_path / "case/end.txt").read_text(encoding="utf-8") == "a"
+
+
+def test_a_run_goes_on_from_another_one(tmp_path: Path) -> None:
+    """On a copy of the folder of a run that has ended, which stays as it is."""
+    assert ended(tmp_path, "a") == "a"
+    folder, _ = Runs(tmp_path).ended("next", "end.txt", sys.executable, "-c", WRITES, "b", after="case")
+    assert (folder / "end.txt").read_text(encoding="utf-8") == "ab"
+    assert (tmp_path / "case/end.txt").read_text(encoding="utf-8") == "a"

@@ -110,5 +110,5 @@ def test_from_statics_there_is_no_such_table(tmp_path: Path) -> None:
 def test_an_inertia_below_the_body_is_refused(tmp_path: Path) -> None:
     """The meshed body of He's pinion has 7.4e-3 kg m², and natural modes that move all of its mass."""
     light = scene("dynamics.pinion_inertia_kg_m2=3e-3", "transient.modes_per_harmonic=1")
-    with pytest.raises(InputError, match=r"pinion_inertia_kg_m2: wanted at least that of the meshed body, 0\.0073"):
+    with pytest.raises(InputError, match=r"pinion_inertia_kg_m2: wanted at least that of the gear's body, 0\.0073"):
         run_transient(light, tmp_path / "x", quiet=True)

@@ -10,8 +10,6 @@ from math import isnan
 from pathlib import Path
 
 import numpy as np
-from evolvent.dynamics.small_system import SmallSystem, pair_system
-from evolvent.dynamics.of_scene import drive_settings
 from scipy.optimize import brentq
 
 from evidence.checkout import DEMOS
@@ -30,6 +28,8 @@ from evidence.pages.papers.kept_runs import kept
 from evidence.pages.papers.kept_runs.kept import Named
 from evidence.tables import markdown
 from evolvent.dynamics.modes.static_shapes import with_elastic_bodies
+from evolvent.dynamics.of_scene import drive_settings
+from evolvent.dynamics.small_system import SmallSystem, pair_system
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from evolvent.gears.problem.gear_inertia import refuse_light_gears
 from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.pair_model import RIGID, DriveSettings, geometric_backlash, lacking_room
+from evolvent.gears.problem.gear_inertia import refuse_light_gears
 from evolvent.gears.problem.load_limits import rounded_up
 from evolvent.scene.backlash import GIVING, unnamed_backlash
 from evolvent.scene.gear_problem import gear_problem

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from evolvent.commands.app import main
-from evolvent.check.check_report import overview
-from evolvent.dynamics.of_scene import backlash_problem, operating_point
 
+from evolvent.check.check_report import overview
+from evolvent.commands.app import main
 from evolvent.dynamics.modes import static_shapes
+from evolvent.dynamics.of_scene import backlash_problem, operating_point
 from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.vibration import run_dynamics
 from evolvent.run.scene_run import run_scene

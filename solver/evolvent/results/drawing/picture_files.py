@@ -38,7 +38,9 @@ def draw(pictures: Iterable[Picture], folder: RunFolder) -> Drawn:
     for picture in pictures:
         try:
             written.append(folder.write(f"pictures/{picture.name}", picture.draw()))
-        except (ArchiveError, WriteError):
+        except WriteError:
+            raise
+        except ArchiveError:  # a table, whose remedy is not to draw again
             raise
         except Exception as error:  # whatever matplotlib, pyvista or a graphics driver may raise
             reason = str(error) or type(error).__name__

@@ -40,7 +40,7 @@ def alone(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Alone:
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-@pytest.mark.parametrize("demo", [*DEMOS[:3], pytest.param(DEMOS[3], marks=pytest.mark.slow)])
+@pytest.mark.parametrize("demo", [*DEMOS[:3], pytest.param(DEMOS[3], marks=[pytest.mark.slow, pytest.mark.evidence])])
 def test_demo(run_script: Run, alone: Alone, tmp_path: Path, demo: str, ranks: int) -> None:
     """Status 0, a table and a picture; the table is printed once, whatever the number of ranks."""
     done, out = alone(demo) if ranks == 1 else (run_script(*started(demo, tmp_path, 2), ranks=2), tmp_path)
@@ -52,6 +52,7 @@ def test_demo(run_script: Run, alone: Alone, tmp_path: Path, demo: str, ranks: i
     assert sum(line.startswith(head) for line in done.stdout.splitlines()) == 1
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_ball_profile_on_squares(alone: Alone) -> None:
     """Square cells of a/2, cut by the edge of contact at all angles: the skew method's profile with γ = 0.3 C is off by
@@ -86,6 +87,7 @@ def test_wear_demo(run_script: Run, tmp_path: Path) -> None:
     assert len((tmp_path / "table.csv").read_text().splitlines()) > 10
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_gear_wear_demo(run_script: Run, tmp_path: Path) -> None:
     """He's pair on a coarse mesh: status 0, the run's pictures and the paper's, a table over the profile, a line a
@@ -99,6 +101,7 @@ def test_gear_wear_demo(run_script: Run, tmp_path: Path) -> None:
     assert "depth at r = 77 mm" in done.stdout and "whole engagement" in done.stdout
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_gear_dynamics_demo(run_script: Run, tmp_path: Path) -> None:
     """He's pair with fewer positions and speeds: status 0 and a picture; resonance leans to lower speeds with both
@@ -114,6 +117,7 @@ def test_gear_dynamics_demo(run_script: Run, tmp_path: Path) -> None:
         assert float(row["stiffness_at_3500_rpm"]) == pytest.approx(258.6, abs=0.05)
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_root_stress_demo(run_script: Run, tmp_path: Path) -> None:
     """Zhang's pair on coarse meshes under two torques: status 0, a picture; tension is proportional to the torque, 1 %,

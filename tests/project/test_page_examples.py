@@ -19,6 +19,7 @@ from evolvent.scene.scene import scene_from_text
 from tests.support.checkout import PYTHONPATH, ROOT
 from tests.support.running.page_commands import NAMES
 from tests.support.running.processes import one_at_a_time
+from tests.support.running.samples import sampled
 
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 LANGUAGES = {"sh", "python", "toml", "text", "yaml"}
@@ -34,6 +35,9 @@ def blocks(page: Path, language: str) -> list[str]:
 def having(language: str) -> list[Path]:
     """The pages that have blocks of a language."""
     return [page for page in PAGES if blocks(page, language)]
+
+
+README_FIRST = sampled(sorted(having("sh"), key=lambda page: page.name != "README.md"))
 
 
 @pytest.fixture
@@ -66,7 +70,7 @@ def environment(checkout: Path) -> dict[str, str]:
 
 @pytest.mark.mpi
 @pytest.mark.slow
-@pytest.mark.parametrize("page", having("sh"), ids=lambda page: page.name)
+@pytest.mark.parametrize("page", README_FIRST, ids=lambda page: page.name)
 def test_shell_lines_run(page: Path, checkout: Path) -> None:
     """All shell blocks of a page, one after the other in one shell that stops at the first failure."""
     script = "set -e\n" + "".join(blocks(page, "sh"))

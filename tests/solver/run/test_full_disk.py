@@ -15,6 +15,7 @@ from tests.support.running.processes import Run
 STEP, LAST = 20, 500  # kB; the run takes 460, a position and the flanks in contact no less than a step
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small file system wants root")
 def test_full_disk_at_every_write_is_resumed(run_script: Run, tmp_path: Path) -> None:

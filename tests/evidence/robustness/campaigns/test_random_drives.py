@@ -15,6 +15,7 @@ from evolvent.dynamics.oscillator.mesh_law import Jammed
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState, Scales, SteadyState
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.arrays import Bools, Floats
+from tests.support.running.samples import sampled
 
 SEEDS = (2, 6, 7, 13, 25)
 """Of forces F(x, φ) and k x, sudden steps, folds, free flight, and blows on both sides."""
@@ -27,7 +28,7 @@ def few_speeds(seed: int) -> RandomDrive:
     return replace(drawn, periods=drawn.periods[np.linspace(0, len(drawn.periods) - 1, FEW).astype(int)])
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", sampled(SEEDS))
 def test_every_motion_is_verified(seed: int) -> None:
     """All motions, the unstable ones too, come back to themselves by SciPy's integrator, with balanced energy."""
     outcome = drive_outcome_of(few_speeds(seed), seed)

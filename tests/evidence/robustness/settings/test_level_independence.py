@@ -13,6 +13,7 @@ from evolvent.gears.problem.gear_problem import MeshSettings
 COARSE = MeshSettings("quick", 1.0, two_level=True)
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_gamma_changes_pressures_of_a_coarse_contact_only() -> None:
     """γ ten times its default: transmission error and sharing within 0.5 %, and p0 not the same, so that γ acts."""

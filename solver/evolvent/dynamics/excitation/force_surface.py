@@ -20,23 +20,23 @@ from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.pair import GearPair
 
 SAME_LOAD = 1e-9
-"""Part by which loads differ that are one."""
+"""Relative difference below which two loads are the same."""
 DEPTH_ACCURACY = 1e-15
-"""Of the deflection under a load between those that were solved [mm]."""
+"""Accuracy of the deflection under a load between those that were solved [mm]."""
 
 
 class NoForceSurface(ResultError):
-    """Deflections that do not grow with the torque."""
+    """Error for deflections that do not grow with the torque."""
 
 
 @dataclass(frozen=True, eq=False)
 class MeshExcitation:
-    """What a pair's mesh does to its vibration."""
+    """Excitation by a mesh: unloaded transmission error, and the mesh under several torques."""
 
     unloaded_error: Floats
     """(n,) e [mm] at equidistant phases of a pitch."""
     loaded: LoadedMesh
-    """The same positions under (m,) torques."""
+    """Mesh at the same positions under (m,) torques."""
 
     def __post_init__(self) -> None:
         """Raises NoForceSurface."""
@@ -51,12 +51,12 @@ class MeshExcitation:
 
     @property
     def depths(self) -> Floats:
-        """x = s − e (n, m) [mm]."""
+        """(n, m) deflection x = s − e [mm]."""
         return self.loaded.errors - self.unloaded_error[:, None]
 
     @property
     def secant(self) -> Floats:
-        """F/x (n, m) [N/mm]."""
+        """(n, m) secant stiffness F/x [N/mm]."""
         return self.loaded.forces / self.depths
 
     def in_series(self, stiffness: float) -> MeshExcitation:
@@ -101,7 +101,7 @@ class MeshExcitation:
         return CubicHermiteSpline(np.append(0.0, x), np.append(0.0, force), np.append(2.0 * first - slope[0], slope))
 
     def _over_depth(self, i: int, depths: Floats) -> Floats:
-        """F (k,) [N] at position i, at depths (k,); beyond the heaviest torque it goes on straight."""
+        """F (k,) [N] at position i, at depths (k,); linear beyond the heaviest torque."""
         heaviest, slope = self.depths[i, -1], self.loaded.stiffness[i, -1]
         beyond = np.maximum(depths - heaviest, 0.0)
         return np.asarray(self._force(i)(np.minimum(depths, heaviest)) + slope * beyond)

@@ -21,29 +21,30 @@ A, B, C = np.ascontiguousarray(DOP853.A), np.ascontiguousarray(DOP853.B), np.asc
 """Runge-Kutta method of order 8, the tableau of SciPy's DOP853."""
 STAGES = len(B)
 SIZE = 8
-"""Of a state: s [mm], v [mm/s], and the derivatives of s and of v by s_0, v_0 and ln T."""
+"""Size of an integration state: s [mm], v [mm/s], and the derivatives of s and of v by s_0, v_0 and ln T."""
 FREE = 0
-"""Region of free flight. Region b + 1: the loaded flanks touch with x in interval b; −b − 1: the back flanks do. Behind
-the last interval there is one more without end, in which F goes on straight."""
+"""Number of the region of free flight. In region b + 1 the loaded flanks touch with x in interval b, in −b − 1 the back
+flanks. Beyond the last interval there is one more without end, in which F is linear."""
 
 
 class Oscillator(NamedTuple):
-    """What compiled code needs of the model."""
+    """Parameters of the equation of motion for compiled code."""
 
     mass: float
-    """m [t]."""
+    """Equivalent mass m [t]."""
     damping: float
-    """c of the mesh [N·s/mm]."""
+    """Damping c of the mesh [N·s/mm]."""
     always: bool
-    """Whether it acts in free flight, too, then with ė of the loaded flanks wherever flanks touch."""
+    """Whether the damping of the mesh acts in free flight, too, then with ė of the loaded flanks wherever flanks
+    touch."""
     ground: float
-    """c_g [N·s/mm]."""
+    """Damping c_g of the shafts against the ground [N·s/mm]."""
     load: float
-    """F_0 [N]."""
+    """Static load F_0 along the line of action [N]."""
     front: MeshSide
-    """The loaded flanks."""
+    """Force of the loaded flanks."""
     back: MeshSide
-    """The others."""
+    """Force of the back flanks."""
 
 
 @compiled
@@ -55,7 +56,7 @@ def offset_at(side: MeshSide, cell: int, τ: float) -> tuple[float, float]:
 
 @compiled
 def interval_at(side: MeshSide, x: float) -> int:
-    """The interval of a depth x > 0."""
+    """Index of the interval in which a depth x > 0 lies."""
     return max(int(np.searchsorted(side.depths, x)) - 1, 0)
 
 

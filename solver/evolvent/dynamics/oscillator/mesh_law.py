@@ -20,13 +20,13 @@ from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.errors import ResultError
 
 NEVER = 1e6
-"""Offset of a side that is never touched [mm]."""
+"""Offset [mm] of a side that is never touched."""
 ROUNDING = 1e-12
-"""Of offsets [mm]."""
+"""Rounding error of offsets [mm]: a smaller overlap of both flanks is ignored."""
 LOOKED_AT = 9
-"""Phases of an interval at which both sides are looked at."""
+"""Phases per interval at which both sides are tested for overlap."""
 LAST_BIT = 1e-14
-"""Phases that differ by less are one."""
+"""Difference below which two phases are the same."""
 
 
 class Jammed(ResultError):
@@ -57,12 +57,12 @@ class MeshSide(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MeshLaw:
-    """Both sides of the teeth."""
+    """Mesh force of both sides of the teeth."""
 
     front: MeshSide
-    """The loaded flanks."""
+    """Force of the loaded flanks."""
     back: MeshSide
-    """The others."""
+    """Force of the back flanks."""
 
     def __post_init__(self) -> None:
         """Raises Jammed: the oscillator has at most one side in contact."""
@@ -168,7 +168,7 @@ def _offsets(side: MeshSide, cells: Ints, phases: Floats) -> Floats:
 
 
 def _different(phases: Floats) -> Floats:
-    """Ascending, each once."""
+    """Ascending phases, without those that differ by `LAST_BIT` or less from the one before."""
     every = np.unique(phases)
     return np.asarray(every[np.concatenate([[True], np.diff(every) > LAST_BIT])])
 

@@ -17,9 +17,9 @@ from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, 
 from evolvent_meshes.arrays import Floats
 
 LOWEST = 1e-3
-"""Amplitude over the static force from which on lines are drawn."""
+"""Least amplitude of the lines that are drawn, over the static force."""
 BEYOND_NATURAL = 3.2
-"""Highest frequency, over the natural one."""
+"""Highest frequency of the picture, over the natural one."""
 WHOLE, PART = 5.5, 3.0
 """Widths of lines of whole orders and of those between them [pt]."""
 
@@ -31,7 +31,7 @@ def waterfall_picture(known: DriveSummary, rows: Sequence[SpectrumRow]) -> bytes
 
 
 def waterfall_figure(known: DriveSummary, rows: Sequence[SpectrumRow]) -> Figure:
-    """Running up."""
+    """Spectrum of the mesh force while the pair runs up: frequency over speed, coloured by the amplitude."""
     lines = [row for row in rows if row.way == "up"]
     speeds = np.array(list(dict.fromkeys(row.speed_rpm for row in lines)))
     natural, load = 1e-3 * known.mesh_frequency_Hz, known.static_force_N

@@ -108,7 +108,7 @@ def steady_state(model: TorsionalModel, period: float, start: Floats) -> SteadyS
 
 
 def damped_less(model: TorsionalModel, period: float, start: Floats) -> SteadyState:
-    """Steady state for which there is no start nearby, from that with strong damping against the ground, which is
+    """Steady state for which no start is nearby: continued from that with strong damping against the ground, which is
     halved step by step and then removed. start: (2,), for the first of these.
 
     Raises NoSteadyState.

@@ -41,7 +41,7 @@ TRIES = 8
 """Most tries to find a step in which no border is crossed before its end: each of both borders may be touched on the
 way."""
 NOWHERE = -1
-"""Number of no border."""
+"""Border number that stands for no border."""
 
 
 @compiled

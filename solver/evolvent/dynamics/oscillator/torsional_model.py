@@ -77,7 +77,8 @@ class TorsionalModel:
         return BEYOND_MEASURE * (abs(self.load) / self.law.stiffest() + swing)
 
     def escaped(self, state: Floats) -> bool:
-        """Whether a state (2,) at phase 0 is beyond `reach`, or not a number."""
+        """Whether a state (2,) at phase 0 is beyond `reach`, or faster than an oscillation of that size, or not a
+        number."""
         s, v = state
         depth = max(side.sign * s - side.offset[0, 0] for side in (self.law.front, self.law.back))
         return not (depth <= self.reach and abs(v) <= self.reach * self.fastest)

@@ -34,12 +34,12 @@ class MeshExcitation:
     """Excitation by a mesh: unloaded transmission error, and the mesh under several torques."""
 
     unloaded_error: Floats
-    """(n,) e [mm] at equidistant phases of a pitch."""
+    """(n,) unloaded transmission error e [mm] at equidistant phases of a pitch."""
     loaded: LoadedMesh
     """Mesh at the same positions under (m,) torques."""
 
     def __post_init__(self) -> None:
-        """Raises NoForceSurface."""
+        """Raises NoForceSurface where deflections do not grow with the torque."""
         depths = np.column_stack([np.zeros(len(self.unloaded_error)), self.depths])
         if not (np.diff(depths) > 0.0).all():
             i, j = np.argwhere(~(np.diff(depths) > 0.0))[0]
@@ -73,7 +73,7 @@ class MeshExcitation:
         return force_side(depths, force, self.unloaded_error, last_slope=self.loaded.stiffness[:, -1])
 
     def under(self, load: float) -> tuple[Floats, Floats]:
-        """x (n,) [mm] under a load [N] and the tangent stiffness (n,) [N/mm] there: as solved, or between two solved
+        """Deflection x (n,) [mm] and tangent stiffness (n,) [N/mm] under a load [N]: as solved, or between two solved
         loads as the force over x has them at each position. Raises ValueError beyond the heaviest one."""
         forces = self.loaded.forces
         near = int(np.argmin(np.abs(forces - load)))
@@ -89,8 +89,8 @@ class MeshExcitation:
         return x, slope
 
     def stiffness_side(self, load: float, secant: bool = False) -> MeshSide:
-        """k(φ) x with the tangent or the secant stiffness under a load [N] (He et al. 2022, Eq. 12). Raises ValueError
-        as `under`."""
+        """Mesh force k(φ) x with the tangent or the secant stiffness under a load [N] (He et al. 2022, Eq. 12). Raises
+        ValueError as `under`."""
         x, tangent = self.under(load)
         return linear_side(load / x if secant else tangent, self.unloaded_error)
 
@@ -116,6 +116,6 @@ def mirrored_law(side: MeshSide, pair: GearPair, backlash: float, begin: float =
 
 
 def paper_law(side: MeshSide, backlash: float) -> MeshLaw:
-    """Both sides with the same force at the same phase (He et al. 2022, Eq. 6). backlash: [mm] along the line of
-    action, from flank to flank."""
+    """Mesh force of both sides of the teeth, the same at the same phase (He et al. 2022, Eq. 6). backlash: [mm] along
+    the line of action, from flank to flank."""
     return MeshLaw(side, behind(side, backlash))

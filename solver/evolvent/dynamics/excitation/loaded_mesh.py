@@ -191,7 +191,7 @@ def _predicted(
 
 
 def _step_along_tangent(models: Sequence[GearModel], row: Sequence[SharedPosition]) -> float:
-    """By how much [mm] the transmission error grows up to the torque that follows those of `row`, at the last one's
+    """Growth of the transmission error [mm] up to the torque that follows those of `row`, at the last one's
     stiffness."""
     last, this = models[len(row) - 1 : len(row) + 1]
     return (this.load.torque - last.load.torque) / _radius(this) / row[-1].stiffness

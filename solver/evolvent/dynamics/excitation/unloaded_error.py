@@ -39,10 +39,10 @@ than this times the grid's spacing touch nowhere between its points."""
 
 @dataclass(frozen=True, eq=False)
 class RigidFlanks:
-    """Both loaded flanks as they are made, measured or worn, without deflection."""
+    """Rigid loaded flanks of both gears, as designed, measured or worn."""
 
     pair: GearPair
-    """Both gears and their axes."""
+    """Geometry of the gear pair."""
     charts: tuple[FlankChart | None, FlankChart | None] = (None, None)
     """Deviations of pinion and wheel; None: as designed."""
 
@@ -90,8 +90,9 @@ class RigidFlanks:
 
 
 def unloaded_error(flanks: RigidFlanks, angles: Floats, free: Member = Member.PINION) -> Floats:
-    """e (n,) [mm] at pinion rotations (n,) [rad]: r_b φ that the free gear turns beyond its nominal rotation until the
-    flanks just touch; positive where material is missing. NaN where no flanks face each other."""
+    """Unloaded transmission error e (n,) [mm] at pinion rotations (n,) [rad]: r_b φ that the free gear turns beyond its
+    nominal rotation until the flanks just touch; positive where material is missing. NaN where no flanks face each
+    other."""
     count = POINTS * (LAYERS if flanks.varies_over_the_face else 1)
     stands = [Stand(flanks.pair, float(angle)) for angle in angles]
     size = max(AT_ONCE // (TEETH * count), 1)

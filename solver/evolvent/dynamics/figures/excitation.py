@@ -26,7 +26,7 @@ class PitchColumns:
     """Columns of excitation.csv over n positions of a pitch, m torques."""
 
     phase: Floats
-    """(n + 1,) from 0 to 1 [pitch]."""
+    """(n + 1,) phases from 0 to 1 [pitch]."""
     force: Floats
     """(m,) mesh forces [N]."""
     unloaded: Floats

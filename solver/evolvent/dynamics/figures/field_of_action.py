@@ -64,7 +64,7 @@ class FieldOfAction:
             return gif([frame(self.figure(k)) for k in range(len(self.force))])
 
     def figure(self, k: int) -> Figure:
-        """The frame of position k."""
+        """Frame of the animation at position k."""
         case = self.pressures.case
         angle = np.degrees(case.results[k].stand.angle)
         subtitle = f"{case.speed:g} r/min, μ = {case.friction:g}; rotation of the pinion {angle:.2f}°"

@@ -33,11 +33,11 @@ class MapGrid:
     """The rows of a map as arrays."""
 
     torques: Floats
-    """(m,) ascending [N·m]."""
+    """(m,) torques, ascending [N·m]."""
     natural_speeds: Floats
     """(m,) natural speed under each torque [r/min]."""
     speeds: Floats
-    """(n,) ascending [r/min]."""
+    """(n,) speeds of the pinion, ascending [r/min]."""
     factor: Floats
     """(2, m, n) dynamic factor running up, and down."""
     apart: Floats
@@ -114,7 +114,7 @@ def _draw_cells(axes: Axes, grid: MapGrid, factor: Floats, norm: LogNorm) -> Qua
 
 
 def _hatch(axes: Axes, grid: MapGrid, where: Bools) -> None:
-    """Hatches cells; where: (m, n)."""
+    """Hatches the cells at which `where` (m, n) is true."""
     x, y = _edges(grid.speeds), _edges(grid.torques)
     cells = [[(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])] for i, j in np.argwhere(where)]
     axes.add_collection(PolyCollection(cells, hatch="///", facecolor="none", edgecolor=FAINT, linewidth=0.0))

@@ -14,7 +14,7 @@ from evolvent.results.drawing.style import foot, friction_colours, note, png, sh
 
 Colour = tuple[float, ...]
 LONG = 5
-"""Entries of a legend in one column, at most one less."""
+"""Number of friction coefficients from which on the legend has two columns."""
 UNKNOWN = float("nan")
 ROOM = 0.15
 """Free height above the curves, over the height of a panel."""

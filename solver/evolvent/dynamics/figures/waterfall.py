@@ -69,7 +69,7 @@ def _strongest(lines: Sequence[SpectrumRow], load: float) -> str:
 
 
 def _draw_lines(axes: Axes, speeds: Floats, lines: Sequence[SpectrumRow], load: float) -> LineCollection:
-    """Each line as a piece along its order, halfway to the speeds (n,) beside; the strongest on top."""
+    """Draws each line as a piece along its order, halfway to the speeds (n,) beside; the strongest on top."""
     middle = 0.5 * (speeds[1:] + speeds[:-1])
     ends = np.column_stack([np.append(speeds[0], middle), np.append(middle, speeds[-1])])
     reach = dict(zip(speeds.tolist(), ends))

@@ -64,7 +64,7 @@ class Branch:
 
     @cached_property
     def periods(self) -> Floats:
-        """Mesh periods (k,) [s]."""
+        """Mesh periods (k,) [s] of the points."""
         return np.array([point.period for point in self.points])
 
     @cached_property
@@ -106,7 +106,7 @@ class _Point:
     z: Floats
     """(3,) s, ṡ and ln(speed) in scaled units."""
     tangent: Floats
-    """(3,) unit vector along the branch."""
+    """(3,) unit tangent vector of the branch."""
     state: SteadyState
 
 
@@ -125,7 +125,7 @@ class _Track:
         return min(LONGEST, max(ratio, SHARPEST) / SPEED_SCALE)
 
     def longest(self, here: _Point) -> float:
-        """Longest step from a point."""
+        """Longest step along the branch from a point."""
         size, along = max(1.0, float(np.linalg.norm(here.z[:2]))), np.abs(here.tangent)
         far = size * (SHORT if along[2] < STEEP else LONGEST)
         return float(1.0 / max(np.linalg.norm(along[:2]) / far, along[2] / self.narrow))
@@ -139,7 +139,7 @@ class _Track:
         return found, change, known
 
     def scaled(self, state: SteadyState) -> Floats:
-        """z (3,) of a steady state."""
+        """Scaled coordinates z (3,) of a steady state."""
         return np.append(state.state / self.scales.array, -np.log(state.period) / SPEED_SCALE)
 
     def is_near(self, here: _Point, there: _Point, length: float) -> bool:

@@ -49,7 +49,7 @@ class Oscillator(NamedTuple):
 
 @compiled
 def offset_at(side: MeshSide, cell: int, τ: float) -> tuple[float, float]:
-    """e(τ) [mm] and de/dτ in a phase interval."""
+    """Offset e(τ) [mm] of a side and de/dτ, in a phase interval."""
     t, c = τ - side.phases[cell], side.offset[cell]
     return c[0] + t * (c[1] + t * (c[2] + t * c[3])), c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])
 
@@ -77,7 +77,7 @@ def force_at(side: MeshSide, cell: int, b: int, τ: float, x: float) -> tuple[fl
 
 @compiled
 def depth_at(side: MeshSide, cell: int, τ: float, T: float, s: float, v: float) -> tuple[float, float]:
-    """x = ±s − e [mm] of a side, and dx/dτ."""
+    """Depth x = ±s − e [mm] of a side, and dx/dτ."""
     e, slope = offset_at(side, cell, τ)
     return side.sign * s - e, side.sign * T * v - slope
 
@@ -86,7 +86,7 @@ def depth_at(side: MeshSide, cell: int, τ: float, T: float, s: float, v: float)
 def acceleration(
     o: Oscillator, region: int, front: int, back: int, τ: float, T: float, s: float, v: float
 ) -> tuple[float, float, float, float]:
-    """a [mm/s²] and its derivatives by s, v and ln T. front, back: phase intervals of both sides."""
+    """Acceleration a [mm/s²] and its derivatives by s, v and ln T. front, back: phase intervals of both sides."""
     force, by_s, by_v, by_T = o.load - o.ground * v, 0.0, -o.ground, 0.0
     if region < FREE:
         side, cell = o.back, back

@@ -30,7 +30,7 @@ LAST_BIT = 1e-14
 
 
 class Jammed(ResultError):
-    """Both flanks of a tooth touch at once, by `overlap` [mm] at the most."""
+    """Error for flanks that touch on both sides of a tooth at once, by `overlap` [mm] at the most."""
 
     def __init__(self, overlap: float) -> None:
         super().__init__(
@@ -50,7 +50,7 @@ class MeshSide(NamedTuple):
     offset: Floats
     """(n, 4) coefficients of e(τ) [mm], by powers of the phase from the interval's start."""
     depths: Floats
-    """(m + 1,) ends of the intervals of x, from 0 [mm]; beyond the last one F goes on straight."""
+    """(m + 1,) ends of the intervals of x, from 0 [mm]; beyond the last one F is linear."""
     force: Floats
     """(n, m, 4, 4) coefficients of F(x, τ) [N], by powers of x and of τ from the starts of the intervals."""
 
@@ -163,7 +163,7 @@ def mirrored(side: MeshSide, meeting: float, backlash: float) -> MeshSide:
 
 
 def _offsets(side: MeshSide, cells: Ints, phases: Floats) -> Floats:
-    """e (..., n) [mm] at phases (..., n) in phase intervals (n,)."""
+    """Offsets e (..., n) [mm] of a side at phases (..., n) in phase intervals (n,)."""
     return np.asarray((side.offset[cells] * (phases - side.phases[cells])[..., None] ** np.arange(4)).sum(axis=-1))
 
 

@@ -30,7 +30,7 @@ class Settled:
     """Final motion of a time integration."""
 
     state: Floats
-    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    """State (2,) at phase 0: s [mm] and ṡ [mm/s]."""
     repeats: int
     """Mesh periods after which the motion repeats: 1 with the mesh, more where it is subharmonic, 0 where it does not
     within `LONGEST_REPEAT`: quasi-periodic, chaotic, not settled after `MOST_PERIODS`, or escaped."""

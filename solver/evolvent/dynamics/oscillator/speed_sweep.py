@@ -132,10 +132,11 @@ def _some_steady_state(model: TorsionalModel, period: float) -> SteadyState:
 
 
 class _Steady:
-    """The steady states that are known so far. Pieces of the branch are added at its end, so that places stay."""
+    """Steady states known so far. Pieces of the branch are added at its end, so that positions on it stay."""
 
     def __init__(self, model: TorsionalModel, periods: Floats, ends: tuple[float, float], branch: Branch) -> None:
-        """ends: mesh periods between which branches are followed."""
+        """Finds the steady states of a branch at mesh periods. ends: mesh periods between which branches are
+        followed."""
         self.model, self.periods, self.ends, self.branch = model, periods, ends, branch
         self.coexisting = [list(self._refined(float(period), 0)) for period in periods]
 

@@ -32,7 +32,7 @@ class SteadyState:
     period: float
     """Mesh period T [s]."""
     state: Floats
-    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    """State (2,) at phase 0: s [mm] and ṡ [mm/s]."""
     derivatives: Derivatives
     """(2, 3) derivatives of the state after a mesh period, by s and ṡ before it and by ln T."""
 
@@ -43,7 +43,7 @@ class SteadyState:
 
     @property
     def stable(self) -> bool:
-        """Whether small disturbances die out."""
+        """Whether the steady state is stable: small disturbances die out."""
         return bool(np.abs(self.multipliers).max() < 1.0)
 
 
@@ -69,7 +69,7 @@ class Scales:
 
 
 def residual(model: TorsionalModel, scales: Scales, period: float, state: Floats) -> tuple[Floats, Derivatives]:
-    """(P(y) − y)/scales (2,), and its derivatives (2, 3) by y/scales and ln T."""
+    """Residual (P(y) − y)/scales (2,) of a steady state, and its derivatives (2, 3) by y/scales and ln T."""
     after, derivatives = period_map(model, period, state)
     size = scales.array
     wide = np.append(size, 1.0)

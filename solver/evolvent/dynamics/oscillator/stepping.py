@@ -79,7 +79,7 @@ def beyond(region: int, border: int) -> int:
 
 @compiled
 def region_at(o: Oscillator, front: int, back: int, τ: float, T: float, y: Floats) -> int:
-    """The region of a state."""
+    """Region of the force in which a state y lies, as by `FREE`."""
     x = depth_at(o.front, front, τ, T, y[0], y[1])[0]
     if x > 0.0:
         return 1 + interval_at(o.front, x)

@@ -60,7 +60,7 @@ class _SmoothSide:
         return self.sign * s - _cubic(self.offset, τ - self.start)
 
     def error_slope(self, τ: float) -> float:
-        """de/dτ [mm]."""
+        """Slope de/dτ [mm] of the unloaded error."""
         return _slope(self.offset, τ - self.start)
 
     def pressed(self, τ: float, x: float) -> float:
@@ -104,7 +104,7 @@ class _Legs:
     sides: dict[int, _SmoothSide]
     period: float
     relative: float
-    """Relative tolerance."""
+    """Relative tolerance of the integration."""
     absolute: Floats
     """(2,) absolute tolerances of s [mm] and ṡ [mm/s]."""
 

@@ -101,7 +101,7 @@ class PitchCurve:
 
     @property
     def _halvings(self) -> float:
-        """How often elements would have to be halved to be as small as the contact is wide."""
+        """Number of halvings after which the elements would be as small as the contact is wide."""
         return max(0.0, -math.log2(self.elements / NARROW))
 
     def _compared(self, factors: Mapping[int, float]) -> Compared:

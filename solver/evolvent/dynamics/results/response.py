@@ -87,7 +87,7 @@ class BranchRow:
     equivalent_amplitude_um: float
     """Equivalent amplitude of the transmission error, as in response.csv."""
     stable: bool
-    """Whether small disturbances die out."""
+    """Whether the steady state is stable: small disturbances die out."""
     fold: bool
     """Whether the branch turns back here: a pair that follows the speed jumps."""
     connected: bool

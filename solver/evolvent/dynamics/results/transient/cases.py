@@ -34,7 +34,7 @@ class TransientCase:
 
     @property
     def name(self) -> str:
-        """Speed and friction, for messages."""
+        """Speed and friction coefficient, as messages state them."""
         return f"{self.speed:g} r/min, μ = {self.friction:g}"
 
     @property

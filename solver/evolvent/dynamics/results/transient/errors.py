@@ -66,7 +66,7 @@ class CaseErrors:
     mesh_force: Floats
     """(n,) errors of the mesh force [N; N/mm in 2D]."""
     pressure: Floats
-    """(n,) errors of the largest pressure [MPa]."""
+    """(n,) errors of the largest pressure at each position [MPa]."""
     tooth_force: dict[float, float] = field(default_factory=dict)
     """Rotation of a tooth pair (`by_rotation`) -> error of its normal force [N; N/mm in 2D]."""
     tooth_pressure: dict[float, float] = field(default_factory=dict)

@@ -1,1 +1,1 @@
-"""What a gear pair's mesh does to its vibration: unloaded transmission error, force over deflection, stiffness."""
+"""Excitation of vibration by a gear mesh: unloaded transmission error, force over deflection, stiffness."""

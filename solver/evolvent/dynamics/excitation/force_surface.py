@@ -20,26 +20,26 @@ from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.pair import GearPair
 
 SAME_LOAD = 1e-9
-"""Part by which loads differ that are one."""
+"""Relative difference below which two loads are the same."""
 DEPTH_ACCURACY = 1e-15
-"""Of the deflection under a load between those that were solved [mm]."""
+"""Accuracy of the deflection under a load between those that were solved [mm]."""
 
 
 class NoForceSurface(ResultError):
-    """Deflections that do not grow with the torque."""
+    """Error for deflections that do not grow with the torque."""
 
 
 @dataclass(frozen=True, eq=False)
 class MeshExcitation:
-    """What a pair's mesh does to its vibration."""
+    """Excitation by a mesh: unloaded transmission error, and the mesh under several torques."""
 
     unloaded_error: Floats
-    """(n,) e [mm] at equidistant phases of a pitch."""
+    """(n,) unloaded transmission error e [mm] at equidistant phases of a pitch."""
     loaded: LoadedMesh
-    """The same positions under (m,) torques."""
+    """Mesh at the same positions under (m,) torques."""
 
     def __post_init__(self) -> None:
-        """Raises NoForceSurface."""
+        """Raises NoForceSurface where deflections do not grow with the torque."""
         depths = np.column_stack([np.zeros(len(self.unloaded_error)), self.depths])
         if not (np.diff(depths) > 0.0).all():
             i, j = np.argwhere(~(np.diff(depths) > 0.0))[0]
@@ -51,12 +51,12 @@ class MeshExcitation:
 
     @property
     def depths(self) -> Floats:
-        """x = s − e (n, m) [mm]."""
+        """(n, m) deflection x = s − e [mm]."""
         return self.loaded.errors - self.unloaded_error[:, None]
 
     @property
     def secant(self) -> Floats:
-        """F/x (n, m) [N/mm]."""
+        """(n, m) secant stiffness F/x [N/mm]."""
         return self.loaded.forces / self.depths
 
     def in_series(self, stiffness: float) -> MeshExcitation:
@@ -73,7 +73,7 @@ class MeshExcitation:
         return force_side(depths, force, self.unloaded_error, last_slope=self.loaded.stiffness[:, -1])
 
     def under(self, load: float) -> tuple[Floats, Floats]:
-        """x (n,) [mm] under a load [N] and the tangent stiffness (n,) [N/mm] there: as solved, or between two solved
+        """Deflection x (n,) [mm] and tangent stiffness (n,) [N/mm] under a load [N]: as solved, or between two solved
         loads as the force over x has them at each position. Raises ValueError beyond the heaviest one."""
         forces = self.loaded.forces
         near = int(np.argmin(np.abs(forces - load)))
@@ -89,8 +89,8 @@ class MeshExcitation:
         return x, slope
 
     def stiffness_side(self, load: float, secant: bool = False) -> MeshSide:
-        """k(φ) x with the tangent or the secant stiffness under a load [N] (He et al. 2022, Eq. 12). Raises ValueError
-        as `under`."""
+        """Mesh force k(φ) x with the tangent or the secant stiffness under a load [N] (He et al. 2022, Eq. 12). Raises
+        ValueError as `under`."""
         x, tangent = self.under(load)
         return linear_side(load / x if secant else tangent, self.unloaded_error)
 
@@ -101,7 +101,7 @@ class MeshExcitation:
         return CubicHermiteSpline(np.append(0.0, x), np.append(0.0, force), np.append(2.0 * first - slope[0], slope))
 
     def _over_depth(self, i: int, depths: Floats) -> Floats:
-        """F (k,) [N] at position i, at depths (k,); beyond the heaviest torque it goes on straight."""
+        """F (k,) [N] at position i, at depths (k,); linear beyond the heaviest torque."""
         heaviest, slope = self.depths[i, -1], self.loaded.stiffness[i, -1]
         beyond = np.maximum(depths - heaviest, 0.0)
         return np.asarray(self._force(i)(np.minimum(depths, heaviest)) + slope * beyond)
@@ -116,6 +116,6 @@ def mirrored_law(side: MeshSide, pair: GearPair, backlash: float, begin: float =
 
 
 def paper_law(side: MeshSide, backlash: float) -> MeshLaw:
-    """Both sides with the same force at the same phase (He et al. 2022, Eq. 6). backlash: [mm] along the line of
-    action, from flank to flank."""
+    """Mesh force of both sides of the teeth, the same at the same phase (He et al. 2022, Eq. 6). backlash: [mm] along
+    the line of action, from flank to flank."""
     return MeshLaw(side, behind(side, backlash))

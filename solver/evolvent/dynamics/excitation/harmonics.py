@@ -1,4 +1,4 @@
-"""Mesh harmonics of what repeats with the mesh."""
+"""Mesh harmonics of quantities that repeat with the mesh."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from evolvent_meshes.arrays import Floats
 
 COUNT = 5
-"""Harmonics that are reported."""
+"""Number of mesh harmonics that are reported."""
 
 
 def mesh_harmonics(values: Floats, count: int = COUNT) -> tuple[Floats, Floats]:

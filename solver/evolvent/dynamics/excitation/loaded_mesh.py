@@ -27,21 +27,21 @@ from evolvent.gears.sweep.worn_position import worn_on
 from evolvent_meshes.arrays import Floats
 
 Positions = tuple[Mapping[float, SharedPosition], ...]
-"""A rank's positions, each by its torque [N·mm]."""
+"""Positions of a rank, each by its torque [N·mm]."""
 Figures = Mapping[int, Floats]
 """Number of a position -> (m, 4) under each torque: `figures_of`."""
 COLUMNS = 4
-"""Of these figures."""
+"""Number of figures of a position under a torque: transmission error, stiffness, pinion torque, stored power."""
 
 
 @dataclass(frozen=True, eq=False)
 class LoadedMesh:
-    """A pitch under several torques."""
+    """A mesh over a pitch under several torques."""
 
     angles: Floats
     """(n,) pinion rotations [rad]."""
     forces: Floats
-    """(m,) along the line of action, in the transverse section: torque over base radius [N], ascending."""
+    """(m,) mesh forces along the line of action, in the transverse section: torque over base radius [N], ascending."""
     errors: Floats
     """(n, m) transmission error r_b1 φ_1 − r_b2 φ_2 [mm]."""
     stiffness: Floats
@@ -99,7 +99,7 @@ def certify_torques(found: Figures, torques: Sequence[float]) -> None:
 
 
 def mesh_of(found: Figures, forces: Floats, angles: Floats, deflected: bool = False) -> LoadedMesh:
-    """Of all positions. forces: (m,) along the line of action [N]."""
+    """Mesh from the figures of all positions. forces: (m,) along the line of action [N]."""
     figures = np.array([found[i] for i in range(len(angles))])
     return LoadedMesh(angles, forces, figures[..., 0], figures[..., 1], deflected)
 
@@ -107,10 +107,11 @@ def mesh_of(found: Figures, forces: Floats, angles: Floats, deflected: bool = Fa
 def loaded_mesh_again(
     model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm, kept: Positions | None
 ) -> tuple[LoadedMesh, Positions]:
-    """The same, on flanks that wear: positions (of this rank) that were searched before are not searched again as long
-    as the gears stand near there (`worn_on`). Returns those to go on from.
+    """Mesh under several torques on flanks that wear. Positions (of this rank) that were searched before are not
+    searched again as long as the gears stand near there (`worn_on`). Returns the mesh, and the positions to start from
+    the next time.
 
-    kept: as returned for nearly the same flanks of the same condensed gears; None at first.
+    kept: positions as returned for nearly the same flanks of the same condensed gears; None at first.
 
     Raises NotConverged, SearchError.
     """
@@ -125,7 +126,7 @@ def loaded_mesh_again(
 
 
 def under_torques(model: GearModel, torques: Sequence[float]) -> list[GearModel]:
-    """The gears under each torque [N·mm], whose course does not vary."""
+    """The gears under each constant torque [N·mm]."""
     loads = [GearLoad(torque / model.width_factor, model.load.on) for torque in torques]
     return [replace(model, load=load) for load in loads]
 
@@ -148,7 +149,7 @@ def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float
 
 
 def equilibrium(model: GearModel, position: SharedPosition) -> Stand:
-    """Where the gears stand under their torque."""
+    """Angular position of both gears in equilibrium under their torque."""
     return position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
 
 
@@ -190,7 +191,7 @@ def _predicted(
 
 
 def _step_along_tangent(models: Sequence[GearModel], row: Sequence[SharedPosition]) -> float:
-    """By how much [mm] the transmission error grows up to the torque that follows those of `row`, at the last one's
+    """Growth of the transmission error [mm] up to the torque that follows those of `row`, at the last one's
     stiffness."""
     last, this = models[len(row) - 1 : len(row) + 1]
     return (this.load.torque - last.load.torque) / _radius(this) / row[-1].stiffness

@@ -23,26 +23,26 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 POINTS, LAYERS = 161, 41
-"""Of the first grid, along roll length and height."""
+"""Points of the first search grid, along roll length and height."""
 ZOOM_POINTS, ZOOMS = 13, 8
-"""Of the following grids, each way, and how many there are: each is four times finer than the one before. At a kink of
-the relief the error is its slope times the last spacing, 1e-3 times 1e-6 mm."""
+"""Points of each refined search grid along roll length and height, and number of refinements. Each grid is four times
+finer than the one before. At a kink of the relief the error is its slope times the last spacing, 1e-3 times 1e-6 mm."""
 FEET, FOUND = 12, 1e-12
-"""Steps in which the foot on the modified flank is found, at most, and the change [mm] after which it is: each error is
-that before times the flank's slope, below 0.02."""
+"""Most steps for the foot on the modified flank, and the change [mm] at which they end: each error is that before times
+the flank's slope, below 0.02."""
 TEETH, AT_ONCE = 5, 1_000_000
-"""Tooth pairs of a stand, about, and points that are searched at a time."""
+"""Tooth pairs of an angular position, about, and points that are searched at a time."""
 STEEPEST = 0.1
-"""Slope that no gap has near its least value. Tooth pairs whose gap on the first grid exceeds the least one by more
+"""Largest slope of a gap near its least value. Tooth pairs whose gap on the first grid exceeds the least one by more
 than this times the grid's spacing touch nowhere between its points."""
 
 
 @dataclass(frozen=True, eq=False)
 class RigidFlanks:
-    """Both loaded flanks as they are made, measured or worn, without deflection."""
+    """Rigid loaded flanks of both gears, as designed, measured or worn."""
 
     pair: GearPair
-    """Both gears and their axes."""
+    """Geometry of the gear pair."""
     charts: tuple[FlankChart | None, FlankChart | None] = (None, None)
     """Deviations of pinion and wheel; None: as designed."""
 
@@ -90,8 +90,9 @@ class RigidFlanks:
 
 
 def unloaded_error(flanks: RigidFlanks, angles: Floats, free: Member = Member.PINION) -> Floats:
-    """e (n,) [mm] at pinion rotations (n,) [rad]: r_b φ that the free gear turns beyond its nominal rotation until the
-    flanks just touch; positive where material is missing. NaN where no flanks face each other."""
+    """Unloaded transmission error e (n,) [mm] at pinion rotations (n,) [rad]: r_b φ that the free gear turns beyond its
+    nominal rotation until the flanks just touch; positive where material is missing. NaN where no flanks face each
+    other."""
     count = POINTS * (LAYERS if flanks.varies_over_the_face else 1)
     stands = [Stand(flanks.pair, float(angle)) for angle in angles]
     size = max(AT_ONCE // (TEETH * count), 1)
@@ -100,7 +101,7 @@ def unloaded_error(flanks: RigidFlanks, angles: Floats, free: Member = Member.PI
 
 
 def _least_gaps(flanks: RigidFlanks, stands: Sequence[Stand], free: Member) -> Floats:
-    """(n,) at each stand, of all tooth pairs."""
+    """(n,) least gap [mm] of all tooth pairs at each angular position."""
     number, facing = _Facing.of(flanks.pair, stands, free)
     search = _Search(flanks, facing, free)
     least = np.full(len(stands), np.inf)
@@ -112,16 +113,17 @@ def _least_gaps(flanks: RigidFlanks, stands: Sequence[Stand], free: Member) -> F
 
 @dataclass(frozen=True, eq=False)
 class _Facing:
-    """Tooth pairs (s,) of some stands: from the standing gear's frame to that of the free gear."""
+    """Tooth pairs (s,) at some angular positions: transformation from the standing gear's frame to that of the free
+    gear."""
 
     turn: Floats
-    """(s, 3, 3), by which rows of points are multiplied."""
+    """(s, 3, 3) rotation matrices, by which rows of points are multiplied."""
     shift: Floats
-    """(s, 3) [mm]."""
+    """(s, 3) translations [mm]."""
 
     @staticmethod
     def of(pair: GearPair, stands: Sequence[Stand], free: Member) -> tuple[Ints, _Facing]:
-        """Those that may touch, and the numbers (s,) of their stands."""
+        """Tooth pairs (s,) that may touch, with the indices (s,) of their angular positions."""
         numbers, turns, shifts = [], [], []
         for number, stand in enumerate(stands):
             touching, offset = pair.teeth_in_contact(stand.angle), stand.centre(free.mate, 3) - stand.centre(free, 3)
@@ -150,7 +152,7 @@ class _Search:
         self._step(every, (POINTS, LAYERS if half else 1))
 
     def refine(self, some: Ints) -> None:
-        """The others (t,), each until two grids have not made its gap less."""
+        """Refines the search grids of tooth pairs (t,), each until two grids in a row have not reduced its gap."""
         alike, some = np.zeros(len(self.best), dtype=int), some[np.isfinite(self.best[some])]
         for _ in range(ZOOMS):
             last = self.best[some]
@@ -161,7 +163,7 @@ class _Search:
                 break
 
     def _step(self, some: Ints, counts: tuple[int, int]) -> None:
-        """One grid of tooth pairs (t,); the next one lies around its best point."""
+        """Searches one grid of tooth pairs (t,); the next one lies around its best point."""
         low, high = np.moveaxis(self._ranges[some], 2, 0)
         axes = [np.linspace(low[:, i], high[:, i], count, axis=1) for i, count in enumerate(counts)]
         shape = (len(some), *counts)

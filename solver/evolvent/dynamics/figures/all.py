@@ -31,7 +31,8 @@ OPERATION_PICTURE = TablePicture(
     f"{FIGURES}.operation:operation_picture",
 )
 TRANSIENT_SCENE = SceneValue("transient.toml", "title")
-"""Beside a run's scene.toml, which may have other values: the scene that was computed, with all its defaults."""
+"""Title of the scene that was computed, from its own transient.toml: a run's scene.toml beside it may have other
+values."""
 TRANSIENT_PICTURES = (
     TablePicture(
         "transient.png", (TRANSIENT_SCENE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS),

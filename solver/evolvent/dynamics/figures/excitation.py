@@ -26,11 +26,11 @@ class PitchColumns:
     """Columns of excitation.csv over n positions of a pitch, m torques."""
 
     phase: Floats
-    """(n + 1,) from 0 to 1 [pitch]."""
+    """(n + 1,) phases from 0 to 1 [pitch]."""
     force: Floats
-    """(m,) of the mesh [N]."""
+    """(m,) mesh forces [N]."""
     unloaded: Floats
-    """(n,) transmission error [µm]."""
+    """(n,) unloaded transmission error [µm]."""
     error: Floats
     """(2, m, n) transmission error under each torque, and its error bar [µm]."""
     stiffness: Floats
@@ -38,7 +38,7 @@ class PitchColumns:
 
     @staticmethod
     def of(rows: Sequence[ExcitationRow]) -> PitchColumns:
-        """Of rows by torque and position."""
+        """Columns of rows that are ordered by torque and position."""
         torques = len({row.torque_Nm for row in rows})
 
         def over(name: str) -> Floats:
@@ -95,7 +95,7 @@ def excitation_figure(
 
 
 def _design(facts: ExcitationFacts) -> str:
-    """Where the peak-to-peak transmission error is least, if at a torque between others."""
+    """Sentence on where the peak-to-peak transmission error is least, if at a torque between others; else empty."""
     if facts.design_torque_Nm is None:
         return ""
     bar = "" if facts.design_peak_to_peak_um_error is None else f" ± {facts.design_peak_to_peak_um_error:.2g}"
@@ -146,5 +146,5 @@ def _draw_harris(axes: Axes, rows: Sequence[HarmonicRow], colours: Sequence[obje
 
 
 def _closed(values: Floats) -> Floats:
-    """(n + 1,): the first value at the end again."""
+    """(n + 1,) values with the first one repeated at the end."""
     return np.append(values, values[0])

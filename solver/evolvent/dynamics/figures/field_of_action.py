@@ -21,19 +21,19 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
 NO_ZONE = 1e-6
-"""A zone of a tip edge that is no longer [mm] is none."""
+"""Tip-edge zones no longer than this [mm] are ignored."""
 
 
 @dataclass(frozen=True)
 class FieldOfAction:
-    """One speed and friction coefficient, over the last mesh period."""
+    """Field of action at one speed and friction coefficient, over the last mesh period."""
 
     title: str
-    """Of the scene."""
+    """Title of the scene."""
     pair: GearPair
-    """The gears."""
+    """Geometry of the gear pair."""
     pressures: CasePressures
-    """Its pressures."""
+    """Fitted pressures at this speed and friction coefficient."""
 
     @cached_property
     def force(self) -> Floats:
@@ -49,7 +49,7 @@ class FieldOfAction:
 
     @cached_property
     def zones(self) -> list[tuple[float, float]]:
-        """Of tip edges, from and to [mm] on the path of contact; none where tips are relieved."""
+        """Tip-edge zones, from and to [mm] on the path of contact; none where tips are relieved."""
         (start, end), inner = self.pair.path_of_contact, self.pressures.moving.inner_path
         return [(low, high) for low, high in ((start, inner[0]), (inner[1], end)) if high - low > NO_ZONE]
 
@@ -64,7 +64,7 @@ class FieldOfAction:
             return gif([frame(self.figure(k)) for k in range(len(self.force))])
 
     def figure(self, k: int) -> Figure:
-        """The frame of position k."""
+        """Frame of the animation at position k."""
         case = self.pressures.case
         angle = np.degrees(case.results[k].stand.angle)
         subtitle = f"{case.speed:g} r/min, μ = {case.friction:g}; rotation of the pinion {angle:.2f}°"
@@ -80,7 +80,7 @@ class FieldOfAction:
         return figure
 
     def _lines(self, axes: Axes, cut: Slices) -> None:
-        """Slices at their roll distances, as wide as their layer."""
+        """Draws slices at their roll distances, as wide as their layer."""
         start, end = self.pair.path_of_contact
         half = 0.5 * self.pair.face_width
         for low, high in self.zones:
@@ -99,7 +99,7 @@ class FieldOfAction:
                  ylabel="face [mm]")
 
     def _force(self, axes: Axes, k: int) -> None:
-        """Over the mesh period, with a dot at this position."""
+        """Draws the mesh force over the mesh period, with a dot at this position."""
         angle = np.degrees([result.stand.angle for result in self.pressures.case.results])
         axes.plot(angle, self.force, color=PINION)
         axes.plot(angle[k], self.force[k], "o", color=PINION, markersize=8.0)

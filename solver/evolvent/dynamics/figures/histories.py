@@ -13,7 +13,7 @@ from evolvent.dynamics.results.response import DriveSummary
 from evolvent.results.drawing.style import FAINT, PINION, WHEEL, foot, note, png, sheet, styled
 
 ALIKE = 1e-4
-"""Largest difference of two motions that are drawn as one, over their size."""
+"""Largest difference of two motions that are drawn as one, over their largest force."""
 
 
 def histories_picture(known: DriveSummary, rows: Sequence[HistoryRow]) -> bytes:
@@ -23,7 +23,7 @@ def histories_picture(known: DriveSummary, rows: Sequence[HistoryRow]) -> bytes:
 
 
 def histories_figure(known: DriveSummary, rows: Sequence[HistoryRow]) -> Figure:
-    """rows: up and down at each speed."""
+    """Mesh force over the phase and phase portrait at chosen speeds. rows: running up and down at each speed."""
     load, speeds = known.static_force_N, list(dict.fromkeys(row.speed_rpm for row in rows))
     figure = sheet(
         "Motion at chosen speeds: mesh force over time, and phase portrait",
@@ -64,7 +64,7 @@ def _finish(force: Axes, portrait: Axes, motion: Sequence[HistoryRow], load: flo
 
 
 def _alike(one: Sequence[HistoryRow], other: Sequence[HistoryRow]) -> bool:
-    """Whether two motions are one."""
+    """Whether two motions are the same."""
     if len(one) != len(other):
         return False
     first, second = (np.array([row.force_N for row in motion]) for motion in (one, other))

@@ -13,17 +13,17 @@ from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png,
 from evolvent_meshes.arrays import Floats
 
 SUPERHARMONICS = (1, 2, 3, 4)
-"""Parts of the natural speed that are marked."""
+"""Divisors of the natural speed at which superharmonic resonances are marked."""
 LEAST_SHARE, FAR_ABOVE = 5.0, 2.0
-"""End of the axis of time out of contact at the least [%]; steady states above the runs from which on the amplitude's
-axis leaves them out, over the largest amplitude of the runs."""
+"""Least end of the axis of the time out of contact [%]; and largest amplitude of steady states, over that of the runs,
+that the amplitude's axis shows."""
 ISO = "K_v of ISO 6336-1"
 NO_ISO = f"No {ISO}: it wants dynamics.base_pitch_deviation_um and dynamics.profile_deviation_um."
 BAND = (
     "Its error: estimated, of running up, by the mesh and by the spacing of positions; large beside a jump that moves "
     "with them."
 )
-"""Where error bars are known."""
+"""Sentence at the foot of the picture where error bars are known."""
 
 
 def response_picture(known: DriveSummary, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> bytes:
@@ -105,7 +105,8 @@ def _limit(axes: Axes, rows: Sequence[ResponseRow], branch: Sequence[BranchRow])
 
 
 def _draw_errors(axes: Axes, rows: Sequence[ResponseRow], name: str) -> None:
-    """A band around the values of running up; none where their errors are not known. name: of the column."""
+    """Draws a band of the error around the values of running up; none where errors are not known. name: of the
+    column."""
     speeds, values, errors = (np.array([getattr(row, each) for row in rows])
                               for each in ("speed_rpm", name, f"{name}_error"))
     if np.isfinite(errors).any():
@@ -114,7 +115,7 @@ def _draw_errors(axes: Axes, rows: Sequence[ResponseRow], name: str) -> None:
 
 
 def _draw_iso(axes: Axes, known: DriveSummary, rows: Sequence[ResponseRow]) -> None:
-    """K_v, and the range of its main resonance."""
+    """Draws K_v of ISO 6336-1, and the range of its main resonance."""
     speeds, factors = zip(*((row.speed_rpm, row.dynamic_factor_iso) for row in rows))
     axes.plot(speeds, factors, color=INK, lw=0.9, label=ISO)
     axes.axvspan(*known.iso_main_resonance_rpm, color=FAINT, alpha=0.12, lw=0.0, zorder=0)
@@ -123,7 +124,7 @@ def _draw_iso(axes: Axes, known: DriveSummary, rows: Sequence[ResponseRow]) -> N
 
 
 def _iso_words(known: DriveSummary) -> str:
-    """What the curve of ISO 6336-1 is for, or what it wants."""
+    """Sentence on the deviations that the curve of ISO 6336-1 is for, or on the settings that it needs."""
     if not _has_iso(known):
         return NO_ISO
     return (
@@ -134,19 +135,19 @@ def _iso_words(known: DriveSummary) -> str:
 
 
 def _folds(known: DriveSummary) -> str:
-    """Where the branch turns back."""
+    """Clause on the speeds at which the branch of steady states turns back."""
     speeds = sorted({f"{speed:.0f}" for speed in known.folds_rpm}, key=float)
     return f"; steady states turn back at {', '.join(speeds)} r/min" if speeds else "; no steady state turns back"
 
 
 def _mark_unrepeated(axes: Axes, speeds: Floats, values: Floats, runs: Sequence[ResponseRow]) -> None:
-    """Motions that do not repeat with every mesh."""
+    """Marks motions that do not repeat with every mesh."""
     other = [i for i, row in enumerate(runs) if row.repeats != 1]
     axes.plot(speeds[other], values[other], "o", markersize=4.0, markerfacecolor="white", color=INK)
 
 
 def _draw_branch(axes: Axes, branch: Sequence[BranchRow]) -> None:
-    """All steady states, those that are not stable dotted; pieces that are not connected apart."""
+    """Draws all steady states, those that are not stable dotted; pieces that are not connected apart."""
     pieces = [i for i, row in enumerate(branch) if i and not row.connected]
     speed = np.insert([row.speed_rpm for row in branch], pieces, np.nan)
     size = np.insert([row.equivalent_amplitude_um for row in branch], pieces, np.nan)

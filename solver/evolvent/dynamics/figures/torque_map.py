@@ -18,13 +18,14 @@ from evolvent_meshes.arrays import Bools, Floats
 
 WAYS = "running up", "running down"
 OTHER = 0.02
-"""Part of the dynamic factor by which running down differs, to be hatched."""
+"""Least relative difference of the dynamic factor of running down to that of running up at which cells are hatched."""
 MARGIN = 0.1
-"""Of a value that is the only one: half the height of its cells."""
+"""Half the height of the cells of a single torque, or half the width of those of a single speed, over that value."""
 TICKS = 1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 50.0
-"""Of the colour scale, which is logarithmic: running down factors may be far above those of running up."""
+"""Ticks of the colour scale of the dynamic factor. It is logarithmic, as factors of running down may be far above those
+of running up."""
 HALO = withStroke(linewidth=3.0, foreground="white")
-"""Around lines on all colours of the map."""
+"""White outline of lines on the colours of the map."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,11 +33,11 @@ class MapGrid:
     """The rows of a map as arrays."""
 
     torques: Floats
-    """(m,) ascending [N·m]."""
+    """(m,) torques, ascending [N·m]."""
     natural_speeds: Floats
-    """(m,) under each [r/min]."""
+    """(m,) natural speed under each torque [r/min]."""
     speeds: Floats
-    """(n,) ascending [r/min]."""
+    """(n,) speeds of the pinion, ascending [r/min]."""
     factor: Floats
     """(2, m, n) dynamic factor running up, and down."""
     apart: Floats
@@ -44,7 +45,7 @@ class MapGrid:
 
     @staticmethod
     def of(rows: Sequence[MapRow]) -> MapGrid:
-        """Of rows by torque, way and speed."""
+        """Arrays of rows that are ordered by torque, way and speed."""
         torques = np.array(sorted({row.torque_Nm for row in rows}))
 
         def over(name: str) -> Floats:
@@ -90,7 +91,7 @@ def torque_map_figure(rows: Sequence[MapRow]) -> Figure:
 
 
 def _largest(grid: MapGrid) -> str:
-    """The largest dynamic factors, and whether flanks part."""
+    """Sentence on the largest dynamic factors, and on whether flanks part."""
     found = []
     for way, factor in zip(WAYS, grid.factor):
         i, j = np.unravel_index(int(np.argmax(factor)), factor.shape)
@@ -99,7 +100,7 @@ def _largest(grid: MapGrid) -> str:
 
 
 def _feet(different: Bools) -> list[str]:
-    """What is drawn besides colours."""
+    """Sentences at the foot of the picture: cells, and differences between running up and down."""
     said = "Each cell is a speed under a torque that was computed, torque_map.csv."
     if not different.any():
         return [f"{said} Running up and down the factors are the same within {100.0 * OTHER:.0f} %."]
@@ -107,20 +108,20 @@ def _feet(different: Bools) -> list[str]:
 
 
 def _draw_cells(axes: Axes, grid: MapGrid, factor: Floats, norm: LogNorm) -> QuadMesh:
-    """Colours of the dynamic factor (m, n)."""
+    """Draws the colours of the dynamic factor (m, n)."""
     edges = _edges(grid.speeds), _edges(grid.torques)
     return axes.pcolormesh(*edges, factor, cmap=PRESSURE_MAP, norm=norm)
 
 
 def _hatch(axes: Axes, grid: MapGrid, where: Bools) -> None:
-    """Cells (m, n)."""
+    """Hatches the cells at which `where` (m, n) is true."""
     x, y = _edges(grid.speeds), _edges(grid.torques)
     cells = [[(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])] for i, j in np.argwhere(where)]
     axes.add_collection(PolyCollection(cells, hatch="///", facecolor="none", edgecolor=FAINT, linewidth=0.0))
 
 
 def _draw_region(axes: Axes, grid: MapGrid, inside: Bools) -> None:
-    """The sides of cells between those inside (m, n) and those outside."""
+    """Draws the outline of a region: the sides of cells between those inside (m, n) and those outside."""
     x, y, padded = _edges(grid.speeds), _edges(grid.torques), np.pad(inside, 1)
     upright = np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1])
     level = np.argwhere(padded[1:, 1:-1] != padded[:-1, 1:-1])
@@ -131,7 +132,7 @@ def _draw_region(axes: Axes, grid: MapGrid, inside: Bools) -> None:
 
 
 def _draw_natural(axes: Axes, grid: MapGrid) -> None:
-    """The natural speed under each torque, its half and its third."""
+    """Draws the natural speed under each torque, its half and its third."""
     for part, style, label in ((1, "--", "natural speed"), (2, ":", "its half and third"), (3, ":", None)):
         speeds = grid.natural_speeds / part
         axes.plot(speeds, grid.torques, style, color=INK, lw=1.4, path_effects=[HALO], label=label)

@@ -19,9 +19,9 @@ Colour = tuple[float, ...]
 BAND, BANDS = 0.15, 2
 """Opacity of error bars, and friction coefficients up to which they are drawn: more bands hide each other."""
 ROOM = 0.12
-"""Above the curves, of the height of a panel."""
+"""Free height above the curves, over the height of a panel."""
 WIDTH, HEADER, ROW = 15.0, 1.4, 3.0
-"""Of the sheet, of its titles with the foot, and of a line of panels [inch]."""
+"""Width of the sheet, height of its titles with the foot, and height of a line of panels [inch]."""
 STATIC = {"ls": "--", "lw": 1.0}
 SUBTITLE = "The last mesh period, repeated, at each speed of the pinion, beside the same positions without inertia"
 
@@ -76,7 +76,7 @@ def transient_figure(
 
 
 def _legend(figure: Figure, frictions: Sequence[float], colours: Sequence[Colour]) -> None:
-    """Beside the titles, where it hides no curve."""
+    """Draws the legend beside the titles, where it hides no curve."""
     lines = [Line2D([], [], color=colour, label=f"μ = {μ:g}") for μ, colour in zip(frictions, colours)]
     lines += [Line2D([], [], color=INK, label="with inertia"), Line2D([], [], color=INK, label="without", **STATIC)]
     width, height = figure.get_size_inches()
@@ -96,7 +96,7 @@ def _errors(axes: Axes, rows: Sequence[TransientRow], colour: Colour, banded: bo
 
 
 def _forces(axes: Axes, rows: Sequence[TransientRow], load: float, colour: Colour, banded: bool) -> None:
-    """load: the mesh force without inertia [N]."""
+    """Draws the mesh force over two pitches. load: the mesh force without inertia [N]."""
     over = _pitches(axes, rows)
     bars = np.array([(row.mesh_force_N, row.mesh_force_N_error) for row in rows])
     if banded:
@@ -121,7 +121,7 @@ def _twice(values: Floats) -> Floats:
 
 
 def _pressures(axes: Axes, rows: Sequence[TransientToothRow], colour: Colour, banded: bool) -> None:
-    """Over the engagement, with gaps where no pressure is known."""
+    """Draws the pressure of a tooth over its engagement, with gaps where no pressure is known."""
     angle = np.array([row.tooth_angle_deg for row in rows])
     if not len(angle):
         return
@@ -138,7 +138,7 @@ def _pressures(axes: Axes, rows: Sequence[TransientToothRow], colour: Colour, ba
 
 
 def _band(axes: Axes, angle: Floats, bars: Floats, colour: Colour, least: float = -np.inf) -> None:
-    """Between the error bars (n, 2) of a curve: its values, and their errors; none where these are not known.
-    least: below which the quantity cannot be."""
+    """Draws a band between the error bars (n, 2) of a curve: its values, and their errors; none where these are not
+    known. least: below which the quantity cannot be."""
     value, error = bars.T
     axes.fill_between(angle, np.maximum(value - error, least), value + error, color=colour, alpha=BAND, lw=0.0)

@@ -14,10 +14,10 @@ from evolvent.results.drawing.style import foot, friction_colours, note, png, sh
 
 Colour = tuple[float, ...]
 LONG = 5
-"""Entries of a legend in one column, at most one less."""
+"""Number of friction coefficients from which on the legend has two columns."""
 UNKNOWN = float("nan")
 ROOM = 0.15
-"""Above the curves, of the height of a panel."""
+"""Free height above the curves, over the height of a panel."""
 SUBTITLE = (
     "The flanks touch at t = 0: one gear at its speed at once, the other one at rest under its torque. Dashed: without "
     "inertia."
@@ -31,7 +31,7 @@ def start_picture(title: str, rows: Sequence[StartRow]) -> bytes:
 
 
 def start_figure(title: str, rows: Sequence[StartRow]) -> Figure:
-    """A line of panels for each speed."""
+    """Mesh force, transmission error and largest pressure over time from rest, a line of panels for each speed."""
     speeds = sorted({row.speed_rpm for row in rows})
     frictions = sorted({row.friction for row in rows})
     figure = sheet(f"{title}: start from rest", SUBTITLE, (12.0, 1.4 + 2.8 * len(speeds)))
@@ -58,7 +58,7 @@ def start_figure(title: str, rows: Sequence[StartRow]) -> Figure:
 
 
 def _draw(panels: Sequence[Axes], rows: Sequence[StartRow], colour: Colour, label: str, banded: bool) -> None:
-    """The curves of a case."""
+    """Draws the curves of a case."""
     time = 1e3 * np.array([0.0, *(row.time_s for row in rows)])
     curves = (
         (0.0, [(row.mesh_force_N / row.load_N, row.mesh_force_N_error / row.load_N, 1.0) for row in rows]),

@@ -17,9 +17,9 @@ from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, 
 from evolvent_meshes.arrays import Floats
 
 LOWEST = 1e-3
-"""Amplitude over the static force from which on lines are drawn."""
+"""Least amplitude of the lines that are drawn, over the static force."""
 BEYOND_NATURAL = 3.2
-"""Highest frequency, over the natural one."""
+"""Highest frequency of the picture, over the natural one."""
 WHOLE, PART = 5.5, 3.0
 """Widths of lines of whole orders and of those between them [pt]."""
 
@@ -31,7 +31,7 @@ def waterfall_picture(known: DriveSummary, rows: Sequence[SpectrumRow]) -> bytes
 
 
 def waterfall_figure(known: DriveSummary, rows: Sequence[SpectrumRow]) -> Figure:
-    """Running up."""
+    """Spectrum of the mesh force while the pair runs up: frequency over speed, coloured by the amplitude."""
     lines = [row for row in rows if row.way == "up"]
     speeds = np.array(list(dict.fromkeys(row.speed_rpm for row in lines)))
     natural, load = 1e-3 * known.mesh_frequency_Hz, known.static_force_N
@@ -69,7 +69,7 @@ def _strongest(lines: Sequence[SpectrumRow], load: float) -> str:
 
 
 def _draw_lines(axes: Axes, speeds: Floats, lines: Sequence[SpectrumRow], load: float) -> LineCollection:
-    """Each line as a piece along its order, halfway to the speeds (n,) beside; the strongest on top."""
+    """Draws each line as a piece along its order, halfway to the speeds (n,) beside; the strongest on top."""
     middle = 0.5 * (speeds[1:] + speeds[:-1])
     ends = np.column_stack([np.append(speeds[0], middle), np.append(middle, speeds[-1])])
     reach = dict(zip(speeds.tolist(), ends))

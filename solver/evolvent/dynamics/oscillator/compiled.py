@@ -1,4 +1,4 @@
-"""Functions in compiled code, kept from run to run where there is a place for that."""
+"""Compiled functions, cached from run to run where a cache folder can be written."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def compiled(function: F) -> F:
-    """The function in compiled code, kept in our cache folder. Where none can be written nothing is kept: it is
-    compiled again in each run, for some seconds."""
+    """The function in compiled code, cached from run to run. Where no cache folder can be written it is compiled again
+    in each run, for some seconds."""
     try:
         with _kept_in(str(cache_directory(f"numba-{numba.__version__}"))):
             kept: F = njit(cache=True, error_model="numpy")(function)

@@ -45,7 +45,7 @@ FARTHEST, ROUND_A_CORNER = 0.25, 2.0
 of the branch."""
 MOST_POINTS = 20000
 FOLD_ACCURACY = 1e-10
-"""Of the length along a branch at which it folds."""
+"""Accuracy of the position of a fold along a branch, over the step in which it lies."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,22 +53,23 @@ class Branch:
     """Steady states along a branch, in the order in which they follow each other."""
 
     points: tuple[SteadyState, ...]
-    """From the first speed to the last."""
+    """Steady states from the first speed to the last."""
     folds: tuple[int, ...]
-    """Which of them are folds."""
+    """Indices of the points that are folds."""
     gaps: tuple[int, ...] = ()
-    """Points i of which i + 1 is not the next one: there the branch could not be followed further, from either side."""
+    """Indices i of points that are not connected to point i + 1: the branch could not be followed further, from either
+    side."""
     lost: tuple[str, ...] = ()
-    """Why not, in sentences."""
+    """Reasons why the branch could not be followed further, as sentences."""
 
     @cached_property
     def periods(self) -> Floats:
-        """Mesh periods (k,) [s]."""
+        """Mesh periods (k,) [s] of the points."""
         return np.array([point.period for point in self.points])
 
     @cached_property
     def stable(self) -> Bools:
-        """Whether each is stable (k,)."""
+        """(k,) whether each point is stable."""
         return np.array([point.stable for point in self.points])
 
     def crossings(self, period: float) -> Ints:
@@ -77,20 +78,20 @@ class Branch:
         return np.setdiff1d(np.flatnonzero(beyond[1:] != beyond[:-1]), self.gaps)
 
     def backwards(self) -> Branch:
-        """From the last point to the first."""
+        """The branch from its last point to the first."""
         last = len(self.points) - 1
         folds, gaps = (last - i for i in reversed(self.folds)), (last - 1 - i for i in reversed(self.gaps))
         return Branch(self.points[::-1], tuple(folds), tuple(gaps), self.lost)
 
     def and_then(self, other: Branch) -> Branch:
-        """Both, not connected."""
+        """This branch and another one, with a gap between them."""
         here = len(self.points)
         folds = self.folds + tuple(here + i for i in other.folds)
         gaps = (*self.gaps, here - 1, *(here + i for i in other.gaps))
         return Branch(self.points + other.points, folds, gaps, self.lost + other.lost)
 
     def go_on(self, other: Branch) -> Branch:
-        """Both, of which the other one begins with the last point of this one."""
+        """This branch, continued by another one that begins with its last point."""
         here = len(self.points) - 1
         folds, gaps = (here + i for i in other.folds), (here + i for i in other.gaps)
         return Branch(
@@ -103,15 +104,15 @@ class _Point:
     """A point z = (s, ṡ, ln(speed)) in scaled units, on the branch."""
 
     z: Floats
-    """(3,)."""
+    """(3,) s, ṡ and ln(speed) in scaled units."""
     tangent: Floats
-    """(3,) unit vector along the branch."""
+    """(3,) unit tangent vector of the branch."""
     state: SteadyState
 
 
 @dataclass(frozen=True, eq=False)
 class _Track:
-    """The model in scaled units."""
+    """Oscillator in scaled units, in which a branch is followed."""
 
     model: TorsionalModel
     scales: Scales
@@ -124,7 +125,7 @@ class _Track:
         return min(LONGEST, max(ratio, SHARPEST) / SPEED_SCALE)
 
     def longest(self, here: _Point) -> float:
-        """Longest step from a point."""
+        """Longest step along the branch from a point."""
         size, along = max(1.0, float(np.linalg.norm(here.z[:2]))), np.abs(here.tangent)
         far = size * (SHORT if along[2] < STEEP else LONGEST)
         return float(1.0 / max(np.linalg.norm(along[:2]) / far, along[2] / self.narrow))
@@ -138,7 +139,7 @@ class _Track:
         return found, change, known
 
     def scaled(self, state: SteadyState) -> Floats:
-        """z (3,) of a steady state."""
+        """Scaled coordinates z (3,) of a steady state."""
         return np.append(state.state / self.scales.array, -np.log(state.period) / SPEED_SCALE)
 
     def is_near(self, here: _Point, there: _Point, length: float) -> bool:
@@ -212,7 +213,7 @@ def _points(track: _Track, start: SteadyState, last_period: float) -> Iterator[t
 
 
 def _next(track: _Track, here: _Point, length: float) -> tuple[_Point, float]:
-    """The next point, and the step to take from it."""
+    """The next point of the branch, and the step to take from it."""
     length = min(length, track.longest(here))
     while length > SHORTEST:
         found = track.onto(here, length)
@@ -226,12 +227,12 @@ def _next(track: _Track, here: _Point, length: float) -> tuple[_Point, float]:
 
 
 def _at_speed(track: _Track, before: _Point, after: _Point, z: float) -> _Point:
-    """Between two points, where ln(speed) in scaled units is z."""
+    """Point between two others at which ln(speed) in scaled units is z."""
     return _between(track, before, after, lambda point: point.z[2] - z)
 
 
 def _between(track: _Track, before: _Point, after: _Point, value: Callable[[_Point], float]) -> _Point:
-    """Where a value is 0 that has another sign at both points."""
+    """Point between two others at which a value is 0 that has different signs at both."""
 
     def at(length: float) -> _Point:
         found = track.onto(before, length)

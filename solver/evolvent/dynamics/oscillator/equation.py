@@ -21,41 +21,42 @@ A, B, C = np.ascontiguousarray(DOP853.A), np.ascontiguousarray(DOP853.B), np.asc
 """Runge-Kutta method of order 8, the tableau of SciPy's DOP853."""
 STAGES = len(B)
 SIZE = 8
-"""Of a state: s [mm], v [mm/s], and the derivatives of s and of v by s_0, v_0 and ln T."""
+"""Size of an integration state: s [mm], v [mm/s], and the derivatives of s and of v by s_0, v_0 and ln T."""
 FREE = 0
-"""Region of free flight. Region b + 1: the loaded flanks touch with x in interval b; −b − 1: the back flanks do. Behind
-the last interval there is one more without end, in which F goes on straight."""
+"""Number of the region of free flight. In region b + 1 the loaded flanks touch with x in interval b, in −b − 1 the back
+flanks. Beyond the last interval there is one more without end, in which F is linear."""
 
 
 class Oscillator(NamedTuple):
-    """What compiled code needs of the model."""
+    """Parameters of the equation of motion for compiled code."""
 
     mass: float
-    """m [t]."""
+    """Equivalent mass m [t]."""
     damping: float
-    """c of the mesh [N·s/mm]."""
+    """Damping c of the mesh [N·s/mm]."""
     always: bool
-    """Whether it acts in free flight, too, then with ė of the loaded flanks wherever flanks touch."""
+    """Whether the damping of the mesh acts in free flight, too, then with ė of the loaded flanks wherever flanks
+    touch."""
     ground: float
-    """c_g [N·s/mm]."""
+    """Damping c_g of the shafts against the ground [N·s/mm]."""
     load: float
-    """F_0 [N]."""
+    """Static load F_0 along the line of action [N]."""
     front: MeshSide
-    """The loaded flanks."""
+    """Force of the loaded flanks."""
     back: MeshSide
-    """The others."""
+    """Force of the back flanks."""
 
 
 @compiled
 def offset_at(side: MeshSide, cell: int, τ: float) -> tuple[float, float]:
-    """e(τ) [mm] and de/dτ in a phase interval."""
+    """Offset e(τ) [mm] of a side and de/dτ, in a phase interval."""
     t, c = τ - side.phases[cell], side.offset[cell]
     return c[0] + t * (c[1] + t * (c[2] + t * c[3])), c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])
 
 
 @compiled
 def interval_at(side: MeshSide, x: float) -> int:
-    """The interval of a depth x > 0."""
+    """Index of the interval in which a depth x > 0 lies."""
     return max(int(np.searchsorted(side.depths, x)) - 1, 0)
 
 
@@ -76,7 +77,7 @@ def force_at(side: MeshSide, cell: int, b: int, τ: float, x: float) -> tuple[fl
 
 @compiled
 def depth_at(side: MeshSide, cell: int, τ: float, T: float, s: float, v: float) -> tuple[float, float]:
-    """x = ±s − e [mm] of a side, and dx/dτ."""
+    """Depth x = ±s − e [mm] of a side, and dx/dτ."""
     e, slope = offset_at(side, cell, τ)
     return side.sign * s - e, side.sign * T * v - slope
 
@@ -85,7 +86,7 @@ def depth_at(side: MeshSide, cell: int, τ: float, T: float, s: float, v: float)
 def acceleration(
     o: Oscillator, region: int, front: int, back: int, τ: float, T: float, s: float, v: float
 ) -> tuple[float, float, float, float]:
-    """a [mm/s²] and its derivatives by s, v and ln T. front, back: phase intervals of both sides."""
+    """Acceleration a [mm/s²] and its derivatives by s, v and ln T. front, back: phase intervals of both sides."""
     force, by_s, by_v, by_T = o.load - o.ground * v, 0.0, -o.ground, 0.0
     if region < FREE:
         side, cell = o.back, back

@@ -20,17 +20,17 @@ from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.errors import ResultError
 
 NEVER = 1e6
-"""Offset of a side that is never touched [mm]."""
+"""Offset [mm] of a side that is never touched."""
 ROUNDING = 1e-12
-"""Of offsets [mm]."""
+"""Rounding error of offsets [mm]: a smaller overlap of both flanks is ignored."""
 LOOKED_AT = 9
-"""Phases of an interval at which both sides are looked at."""
+"""Phases per interval at which both sides are tested for overlap."""
 LAST_BIT = 1e-14
-"""Phases that differ by less are one."""
+"""Difference below which two phases are the same."""
 
 
 class Jammed(ResultError):
-    """Both flanks of a tooth touch at once, by `overlap` [mm] at the most."""
+    """Error for flanks that touch on both sides of a tooth at once, by `overlap` [mm] at the most."""
 
     def __init__(self, overlap: float) -> None:
         super().__init__(
@@ -50,19 +50,19 @@ class MeshSide(NamedTuple):
     offset: Floats
     """(n, 4) coefficients of e(τ) [mm], by powers of the phase from the interval's start."""
     depths: Floats
-    """(m + 1,) ends of the intervals of x, from 0 [mm]; beyond the last one F goes on straight."""
+    """(m + 1,) ends of the intervals of x, from 0 [mm]; beyond the last one F is linear."""
     force: Floats
     """(n, m, 4, 4) coefficients of F(x, τ) [N], by powers of x and of τ from the starts of the intervals."""
 
 
 @dataclass(frozen=True, eq=False)
 class MeshLaw:
-    """Both sides of the teeth."""
+    """Mesh force of both sides of the teeth."""
 
     front: MeshSide
-    """The loaded flanks."""
+    """Force of the loaded flanks."""
     back: MeshSide
-    """The others."""
+    """Force of the back flanks."""
 
     def __post_init__(self) -> None:
         """Raises Jammed: the oscillator has at most one side in contact."""
@@ -163,12 +163,12 @@ def mirrored(side: MeshSide, meeting: float, backlash: float) -> MeshSide:
 
 
 def _offsets(side: MeshSide, cells: Ints, phases: Floats) -> Floats:
-    """e (..., n) [mm] at phases (..., n) in phase intervals (n,)."""
+    """Offsets e (..., n) [mm] of a side at phases (..., n) in phase intervals (n,)."""
     return np.asarray((side.offset[cells] * (phases - side.phases[cells])[..., None] ** np.arange(4)).sum(axis=-1))
 
 
 def _different(phases: Floats) -> Floats:
-    """Ascending, each once."""
+    """Ascending phases, without those that differ by `LAST_BIT` or less from the one before."""
     every = np.unique(phases)
     return np.asarray(every[np.concatenate([[True], np.diff(every) > LAST_BIT])])
 

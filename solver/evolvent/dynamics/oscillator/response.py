@@ -11,10 +11,10 @@ from evolvent.dynamics.oscillator.torsional_model import History, TorsionalModel
 from evolvent_meshes.arrays import Floats
 
 SAMPLES = 256
-"""Of a mesh period, for harmonics."""
+"""Samples per mesh period from which harmonics are computed."""
 HARMONICS = 5
 HIGHEST_ORDER = 8
-"""Of the spectrum, in mesh orders."""
+"""Highest mesh order of the spectrum."""
 MESHES = 500
 """Mesh periods of a motion that does not repeat, from which its largest force and its times out of contact are taken:
 from 16 of them the largest force of a chaotic motion of He's pair was 27 % too low."""
@@ -32,29 +32,29 @@ class Spectrum:
     total: Floats
     """(n,) amplitudes of s [mm]."""
     force: Floats
-    """(n,) of the mesh force [N]."""
+    """(n,) amplitudes of the mesh force [N]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """A motion at one speed."""
+    """Figures of a motion at one speed."""
 
     total: Floats
     """(5,) amplitudes of the mesh harmonics of s, the dynamic transmission error with the unloaded one in it [mm]."""
     elastic: Floats
-    """(5,) of s − e [mm]."""
+    """(5,) amplitudes of the mesh harmonics of the deflection s − e [mm]."""
     force: Floats
-    """(5,) of the mesh force [N]."""
+    """(5,) amplitudes of the mesh harmonics of the mesh force [N]."""
     largest_force: float
-    """[N]."""
+    """Largest mesh force [N]."""
     smallest_force: float
-    """[N]; below 0 where back flanks press, or the damper pulls."""
+    """Smallest mesh force [N]; below 0 where back flanks press, or the damper pulls."""
     apart: float
     """Share of the time out of contact."""
     behind: float
     """Share of the time on the back flanks."""
     spectrum: Spectrum
-    """Between the mesh harmonics, too."""
+    """Spectrum of the motion, with the lines between the mesh harmonics."""
 
     @property
     def equivalent_amplitude(self) -> float:
@@ -63,13 +63,14 @@ class Response:
 
     @property
     def elastic_equivalent_amplitude(self) -> float:
-        """The same of s − e [mm]."""
+        """√ΣA_r² of the first three harmonics of the deflection s − e [mm]."""
         return float(np.linalg.norm(self.elastic[:IN_RMS]))
 
 
 def response(model: TorsionalModel, period: float, state: Floats, repeats: int = 1) -> Response:
-    """Of the motion from a state (2,) at phase 0, over the mesh periods [s] after which it repeats. repeats: 0 where it
-    does not; harmonics are then those of `LONGEST_REPEAT` meshes, the rest is of `MESHES`."""
+    """Figures of the motion from a state (2,) at phase 0. period: of the mesh [s]. repeats: mesh periods after which
+    the motion repeats; 0 where it does not. Harmonics are then those of `LONGEST_REPEAT` mesh periods, forces and
+    contact shares those of `MESHES`."""
     wanted, later = np.arange(SAMPLES) / SAMPLES, 0 if repeats else MESHES - LONGEST_REPEAT
     repeats = repeats or LONGEST_REPEAT
     paths = histories(model, period, state, repeats, wanted)
@@ -88,7 +89,8 @@ def response(model: TorsionalModel, period: float, state: Floats, repeats: int =
 
 
 def histories(model: TorsionalModel, period: float, state: Floats, repeats: int, phases: Floats) -> list[History]:
-    """Of so many mesh periods [s] after a state (2,) at phase 0, each at these phases (k,) at least."""
+    """Histories of consecutive mesh periods from a state (2,) at phase 0. period: of the mesh [s]; repeats: number of
+    mesh periods; phases: (k,) that each history has at least."""
     paths: list[History] = []
     for _ in range(repeats):
         paths.append(history(model, period, state, phases))
@@ -97,10 +99,10 @@ def histories(model: TorsionalModel, period: float, state: Floats, repeats: int,
 
 
 def end_of(path: History) -> Floats:
-    """State (2,) at its end."""
+    """State (2,) at the end of a mesh period."""
     return np.array([path.displacement[-1], path.velocity[-1]])
 
 
 def _amplitudes(values: Floats) -> Floats:
-    """(n // 2,) of the lines 1, 2, ... of values (n,) of one repeat."""
+    """Amplitudes (n // 2,) of the spectral lines 1, 2, ... of samples (n,) of one repeat."""
     return np.abs(np.fft.rfft(values)[1:]) * (2.0 / len(values))

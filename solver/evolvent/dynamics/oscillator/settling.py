@@ -1,5 +1,4 @@
-"""Motions found by waiting: what is left of a start after many mesh periods, whether it repeats with the mesh or
-not."""
+"""Motions at one speed by time integration over many mesh periods, whether they repeat with the mesh or not."""
 
 from __future__ import annotations
 
@@ -12,32 +11,33 @@ from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, period_
 from evolvent_meshes.arrays import Floats
 
 MOST_PERIODS = 4000
-"""Of the mesh that are waited for; a motion of damping ratio 0.01 is then 1e-100 from where it ends."""
+"""Most mesh periods integrated until a motion repeats; at a damping ratio of 0.01 a disturbance has then decayed to
+1e-100."""
 FEWEST_PERIODS = 1000
-"""That are waited for at the least. A pair that comes to a speed with a motion on no branch is not waited for longer
-than `decay_periods`: such motions may go on without repeating over many speeds."""
+"""Lower limit of `decay_periods`, the mesh periods integrated at a speed that a pair comes to with a motion on no
+branch. They are limited as such motions may go on without repeating over many speeds."""
 LONGEST_REPEAT = 16
-"""Mesh periods after which a subharmonic motion repeats at the latest, to be told as one."""
+"""Most mesh periods in a repeat of a subharmonic motion that is recognised as one."""
 SETTLED = 1e-9
 """Change from repeat to repeat, over the static deflection, of a motion that has settled."""
 DIFFERENT = 1e-5
-"""Least change after fewer meshes of a motion that repeats after several: one that spirals in on a steady state comes
-closest to itself after several, too."""
+"""Least change after fewer mesh periods of a motion that repeats after several. A motion that spirals in on a steady
+state comes closest to itself after several, too."""
 
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """Where a motion ends."""
+    """Final motion of a time integration."""
 
     state: Floats
-    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    """State (2,) at phase 0: s [mm] and ṡ [mm/s]."""
     repeats: int
-    """Mesh periods after which it repeats: 1 with the mesh, more where it is subharmonic, 0 where it does not within
-    `LONGEST_REPEAT`: quasi-periodic, chaotic, not settled after `MOST_PERIODS`, or escaped."""
+    """Mesh periods after which the motion repeats: 1 with the mesh, more where it is subharmonic, 0 where it does not
+    within `LONGEST_REPEAT`: quasi-periodic, chaotic, not settled after `MOST_PERIODS`, or escaped."""
     waited: int
-    """Mesh periods integrated."""
+    """Number of mesh periods integrated."""
     escaped: bool = False
-    """Whether it grew beyond measure, see `TorsionalModel.escaped`; `state` is the last one within."""
+    """Whether the motion grew beyond measure (`TorsionalModel.escaped`); `state` is then the last one within."""
 
 
 def settled(model: TorsionalModel, period: float, start: Floats, most: int = MOST_PERIODS) -> Settled:
@@ -65,5 +65,5 @@ def decay_periods(model: TorsionalModel, period: float) -> int:
 
 
 def static_state(model: TorsionalModel) -> Floats:
-    """(2,) at rest under the load on the stiffest mesh: a start for `settled`."""
+    """State (2,) at rest under the load on the stiffest mesh: a start for `settled`."""
     return np.array([model.load / model.law.stiffest(), 0.0])

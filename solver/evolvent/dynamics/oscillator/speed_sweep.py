@@ -20,11 +20,11 @@ from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.arrays import Floats
 
 SAME = 1e-6
-"""Distance of two states that are one, in static deflections."""
+"""Distance below which two states are the same, in static deflections."""
 STABILITY_ACCURACY = 1e-9
-"""Of the mesh period at which a branch loses its stability."""
+"""Relative accuracy of the mesh period at which a branch loses its stability."""
 MOST_PIECES = 20
-"""Of the branch that are not connected; more are not looked for."""
+"""Most gaps between pieces of the branch that are not connected; further pieces are not sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,36 +32,36 @@ class OnBranch:
     """A steady state at one of the speeds."""
 
     place: float
-    """Between which points of the branch: i + share of the way from point i to i + 1."""
+    """Position on the branch: i + share of the way from point i to i + 1."""
     state: SteadyState
-    """Stable or not."""
+    """Steady state, stable or not."""
 
 
 @dataclass(frozen=True, eq=False)
 class Running:
-    """The motion of a pair that has come to a speed."""
+    """Motion at one speed of a pair that runs up or down slowly."""
 
     motion: SteadyState | Settled
     """A steady state, or a motion that does not repeat with every mesh."""
     place: float | None
-    """On the branch; None where it is not on it."""
+    """Position on the branch, as in `OnBranch`; None for a motion that is not on it."""
     left_at: float | None
-    """Mesh period [s] at which it has left the branch since the speed before: of the fold, or where stability is lost
-    otherwise. None where it has not."""
+    """Mesh period [s] at which the pair has left the branch since the preceding speed: that of the fold, or where
+    stability is lost otherwise. None where it has not left it."""
 
     @property
     def jumped(self) -> bool:
-        """Whether it has left the branch since the speed before."""
+        """Whether the pair has left the branch since the preceding speed."""
         return self.left_at is not None
 
     @property
     def repeats(self) -> int:
-        """Mesh periods after which it repeats; 0 where it does not, see `Settled`."""
+        """Mesh periods after which the motion repeats; 0 where it does not (`Settled`)."""
         return self.motion.repeats if isinstance(self.motion, Settled) else 1
 
     @property
     def escaped(self) -> bool:
-        """Whether it grows beyond measure."""
+        """Whether the motion grows beyond measure (`TorsionalModel.escaped`)."""
         return isinstance(self.motion, Settled) and self.motion.escaped
 
 
@@ -74,11 +74,11 @@ class SpeedSweep:
     branch: Branch
     """All steady states, with the folds between them."""
     coexisting: tuple[tuple[OnBranch, ...], ...]
-    """At each speed, in their order along the branch; stable or not."""
+    """Steady states at each speed, in their order along the branch; stable or not."""
     up: tuple[Running, ...]
-    """Of a pair that runs up slowly, at each speed."""
+    """Motions at the speeds (n,) of a pair that runs up slowly."""
     down: tuple[Running, ...]
-    """Of one that runs down slowly, at each speed; in ascending order, too."""
+    """Motions at the speeds (n,) of a pair that runs down slowly, in ascending order of the speed."""
 
 
 def sweep_speeds(
@@ -107,7 +107,7 @@ def speeds_to_periods(speeds: Floats, teeth: int) -> Floats:
 
 
 def _branch(model: TorsionalModel, begin: float, end: float) -> Branch:
-    """From one mesh period to another, followed from both of them where it cannot be from one."""
+    """Branch of steady states from one mesh period to another, followed from both ends where one does not suffice."""
     try:
         first = follow(model, _some_steady_state(model, begin), end)
     except NoSteadyState as error:
@@ -123,7 +123,8 @@ def _branch(model: TorsionalModel, begin: float, end: float) -> Branch:
 
 
 def _some_steady_state(model: TorsionalModel, period: float) -> SteadyState:
-    """The one that a pair settles to from rest, or one near that where it settles to none. Raises NoSteadyState."""
+    """Steady state to which a pair settles from rest; one near that by `damped_less` where it settles to none. Raises
+    NoSteadyState."""
     motion = settled(model, period, static_state(model))
     if motion.repeats == 1:
         return steady_state(model, period, motion.state)
@@ -131,15 +132,16 @@ def _some_steady_state(model: TorsionalModel, period: float) -> SteadyState:
 
 
 class _Steady:
-    """The steady states that are known so far. Pieces of the branch are added at its end, so that places stay."""
+    """Steady states known so far. Pieces of the branch are added at its end, so that positions on it stay."""
 
     def __init__(self, model: TorsionalModel, periods: Floats, ends: tuple[float, float], branch: Branch) -> None:
-        """ends: mesh periods between which branches are followed."""
+        """Finds the steady states of a branch at mesh periods. ends: mesh periods between which branches are
+        followed."""
         self.model, self.periods, self.ends, self.branch = model, periods, ends, branch
         self.coexisting = [list(self._refined(float(period), 0)) for period in periods]
 
     def add(self, state: SteadyState) -> None:
-        """The branch through a steady state that is not on the one that is known."""
+        """Adds the branch through a steady state that is not on the known one."""
         both = [follow(self.model, state, end) for end in self.ends]
         piece = both[0].backwards().go_on(both[1])
         first = len(self.branch.points)
@@ -185,12 +187,13 @@ def _run(known: _Steady, order: range, computed: Callable[[], None]) -> list[Run
 
 
 def _left_with(model: TorsionalModel, before: Running) -> Floats:
-    """State (2,) that a pair comes with from the speed before: from rest where that motion grew beyond measure."""
+    """Initial state (2,) at a speed, from the motion at the preceding one: from rest where that grew beyond measure."""
     return static_state(model) if before.escaped else before.motion.state
 
 
 def _start(model: TorsionalModel, period: float, stable: Sequence[OnBranch]) -> Running:
-    """At the first speed. stable: the state that the pair would have come from outside in first."""
+    """Motion at the first speed. stable: stable steady states there, of which a pair that comes from outside has the
+    first."""
     if stable:
         return Running(stable[0].state, stable[0].place, None)
     return Running(settled(model, period, static_state(model)), None, None)
@@ -243,7 +246,8 @@ def _unstable_from(model: TorsionalModel, stable: SteadyState, unstable: SteadyS
 
 
 def _landed(known: _Steady, motion: Settled, number: int, left_at: float | None) -> Running:
-    """Where a motion ended at the speed of this number. left_at: as in `Running`."""
+    """Motion at a speed after the pair has left the branch, with its position where it has settled on the branch again.
+    number: of the speed. left_at: as in `Running`."""
     if motion.repeats != 1:
         return Running(motion, None, left_at)
     same = _same(known, motion, number)

@@ -1,7 +1,7 @@
 """Steady states: motions that repeat with the mesh, stable or not.
 
-A state before a mesh period that is the state after it: a root of P(y) − y, found by Newton's method with the exact
-derivatives of P. The eigenvalues of ∂P/∂y, Floquet's multipliers, say whether it is stable.
+A steady state is a root of P(y) − y, with P(y) the state a mesh period after y. It is found by Newton's method with the
+exact derivatives of P. The eigenvalues of ∂P/∂y, Floquet's multipliers, say whether it is stable.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 
 TOLERANCE = 1e-11
-"""Of the residual, over the static deflection."""
+"""Largest residual of a steady state, over the static deflection."""
 ITERATIONS = 30
 GROUND_HALVINGS = 14
-"""From critical damping on, until the last bit is taken away."""
+"""Halvings of the additional ground damping from critical damping on, before it is removed."""
 
 
 class NoSteadyState(ResultError):
@@ -30,11 +30,11 @@ class SteadyState:
     """A motion that repeats with the mesh."""
 
     period: float
-    """T of the mesh [s]."""
+    """Mesh period T [s]."""
     state: Floats
-    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    """State (2,) at phase 0: s [mm] and ṡ [mm/s]."""
     derivatives: Derivatives
-    """Of the state after a period, (2, 3)."""
+    """(2, 3) derivatives of the state after a mesh period, by s and ṡ before it and by ln T."""
 
     @property
     def multipliers(self) -> Floats:
@@ -43,7 +43,7 @@ class SteadyState:
 
     @property
     def stable(self) -> bool:
-        """Whether small disturbances die out."""
+        """Whether the steady state is stable: small disturbances die out."""
         return bool(np.abs(self.multipliers).max() < 1.0)
 
 
@@ -52,24 +52,24 @@ class Scales:
     """Units in which s, ṡ and ln T are alike in size."""
 
     length: float
-    """[mm]."""
+    """Scale of s [mm]."""
     velocity: float
-    """[mm/s]."""
+    """Scale of ṡ [mm/s]."""
 
     @staticmethod
     def of(model: TorsionalModel) -> Scales:
-        """By the static deflection on the stiffest mesh."""
+        """Scales from the static deflection on the stiffest mesh."""
         length = abs(model.load) / model.law.stiffest() or 1e-3
         return Scales(length, length * model.fastest)
 
     @property
     def array(self) -> Floats:
-        """(2,)."""
+        """(2,) scales of s [mm] and ṡ [mm/s]."""
         return np.array([self.length, self.velocity])
 
 
 def residual(model: TorsionalModel, scales: Scales, period: float, state: Floats) -> tuple[Floats, Derivatives]:
-    """(P(y) − y)/scales (2,), and its derivatives (2, 3) by y/scales and ln T."""
+    """Residual (P(y) − y)/scales (2,) of a steady state, and its derivatives (2, 3) by y/scales and ln T."""
     after, derivatives = period_map(model, period, state)
     size = scales.array
     wide = np.append(size, 1.0)
@@ -108,8 +108,8 @@ def steady_state(model: TorsionalModel, period: float, start: Floats) -> SteadyS
 
 
 def damped_less(model: TorsionalModel, period: float, start: Floats) -> SteadyState:
-    """A steady state for which there is no start nearby: that of the model with strong damping against the ground,
-    which is taken away by halves. start: (2,), for the first of them.
+    """Steady state for which no start is nearby: continued from that with strong damping against the ground, which is
+    halved step by step and then removed. start: (2,), for the first of these.
 
     Raises NoSteadyState.
     """

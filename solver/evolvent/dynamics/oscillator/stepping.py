@@ -30,7 +30,7 @@ from evolvent_meshes.arrays import Floats, Ints
 STEP = 0.12
 """Length of a step, over the time in which the stiffest oscillation turns by 1 rad: its error is then near rounding."""
 FAR = 1e300
-"""Distance of a border that is not there [mm]."""
+"""Distance [mm] of a border that does not exist."""
 ROOT_STEPS = 60
 CLOSE = 1e-15
 """Accuracy of the length of a step that ends at a border, over the step."""
@@ -38,9 +38,10 @@ TURN = 1e-9
 """Accuracy of the length of a step that ends where the distance to a border is least, over the step: the distance is
 then right to its square."""
 TRIES = 8
-"""To find a step in which no border is crossed before its end: of both borders each may be touched on the way."""
+"""Most tries to find a step in which no border is crossed before its end: each of both borders may be touched on the
+way."""
 NOWHERE = -1
-"""No border."""
+"""Border number that stands for no border."""
 
 
 @compiled
@@ -78,7 +79,7 @@ def beyond(region: int, border: int) -> int:
 
 @compiled
 def region_at(o: Oscillator, front: int, back: int, τ: float, T: float, y: Floats) -> int:
-    """The region of a state."""
+    """Region of the force in which a state y lies, as by `FREE`."""
     x = depth_at(o.front, front, τ, T, y[0], y[1])[0]
     if x > 0.0:
         return 1 + interval_at(o.front, x)
@@ -184,7 +185,7 @@ def cross(o: Oscillator, leaving: bool, y: Floats) -> None:
 
 @compiled
 def mesh_force(o: Oscillator, region: int, front: int, back: int, τ: float, T: float, y: Floats) -> float:
-    """Of the mesh with its damping [N], in a region."""
+    """Mesh force with the damping force [N] in a region."""
     return o.load - o.ground * y[1] - o.mass * acceleration(o, region, front, back, τ, T, y[0], y[1])[0]
 
 
@@ -192,7 +193,7 @@ def mesh_force(o: Oscillator, region: int, front: int, back: int, τ: float, T: 
 def record(
     o: Oscillator, region: int, front: int, back: int, τ: float, T: float, y: Floats, row: Floats
 ) -> None:
-    """A line of the path of `advance`."""
+    """Writes a state into a row (5,) of the path of `advance`."""
     row[0], row[1], row[2] = y[0], y[1], np.sign(region)
     row[3] = mesh_force(o, region, front, back, τ, T, y)
     row[4] = offset_at(o.front, front, τ)[0]

@@ -1,5 +1,5 @@
-"""The same equation by SciPy's integrator, split where a side of the teeth is touched or left: the check of everything
-else in this room. It shares the data of the mesh force with it, not the code."""
+"""Reference integration of the oscillator by SciPy, split where a side of the teeth is touched or left. It checks the
+compiled integration, with which it shares the data of the mesh force but no code."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.arrays import Floats
 
 RELATIVE = 1e-12
-"""Tolerance, relative; that of s and ṡ themselves is this times the static deflection and its velocity."""
+"""Relative tolerance; that of s and ṡ themselves is this times the static deflection and its velocity."""
 AFTER_BORDER = 1e-3
-"""Of the stiffest oscillation [rad], after a border or a turn near it, in which that border is not looked at."""
+"""Phase of the stiffest oscillation [rad] after a contact border, or a turn near it, in which that border is
+ignored."""
 SAME_PLACE = 1e-12
-"""Of the static deflection: borders of both sides that are one."""
+"""Distance below which the contact borders of both sides coincide, over the static deflection."""
 Motion = Callable[[float, Floats], list[float]]
 
 
@@ -41,7 +42,7 @@ class _SmoothSide:
 
     sign: float
     start: float
-    """Phase at which it begins."""
+    """Phase at which the interval begins."""
     offset: list[float]
     depths: list[float]
     force: list[list[list[float]]]
@@ -55,15 +56,15 @@ class _SmoothSide:
         )
 
     def depth(self, τ: float, s: float) -> float:
-        """x [mm]."""
+        """Depth x = ±s − e [mm]."""
         return self.sign * s - _cubic(self.offset, τ - self.start)
 
     def error_slope(self, τ: float) -> float:
-        """de/dτ [mm]."""
+        """Slope de/dτ [mm] of the unloaded error."""
         return _slope(self.offset, τ - self.start)
 
     def pressed(self, τ: float, x: float) -> float:
-        """F [N]; beyond the last depth it goes on straight."""
+        """Force F [N]; linear beyond the last depth."""
         last = self.depths[-1]
         b = min(max(bisect_right(self.depths, x) - 1, 0), len(self.depths) - 2)
         along = [_cubic(powers, τ - self.start) for powers in self.force[b]]
@@ -75,7 +76,7 @@ class _SmoothSide:
 def _smooth_interval(
     model: TorsionalModel, period: float, y: Floats, begin: float, end: float, relative: float
 ) -> Floats:
-    """From one time [s] to another, between which e and the stiffness are smooth."""
+    """State (2,) after integration from one time [s] to another, between which e and the stiffness are smooth."""
     middle, t = 0.5 * (begin + end) / period, begin
     sides = {r: _SmoothSide.around(side, middle) for r, side in ((1, model.law.front), (-1, model.law.back))}
     deflection = abs(model.load) / model.law.stiffest()
@@ -103,12 +104,12 @@ class _Legs:
     sides: dict[int, _SmoothSide]
     period: float
     relative: float
-    """Tolerance."""
+    """Relative tolerance of the integration."""
     absolute: Floats
-    """(2,) [mm, mm/s]."""
+    """(2,) absolute tolerances of s [mm] and ṡ [mm/s]."""
 
     def touching(self, t: float, y: Floats) -> int:
-        """The side that touches, 1 or −1, or none, 0."""
+        """The side that touches, 1 or −1; 0 where none does."""
         return next((r for r, side in self.sides.items() if side.depth(t / self.period, float(y[0])) > 0.0), 0)
 
     def next(
@@ -129,7 +130,7 @@ class _Legs:
     def _until(
         self, events: list[_Event], region: int, t: float, y: Floats, end: float
     ) -> tuple[float, Floats, _Event | None]:
-        """To the first of the events, or the end [s]."""
+        """Integrates to the first of the events, or to the end [s]."""
         found = solve_ivp(
             _motion(self.model, region, self.sides, self.period), (t, end), y, "DOP853", events=events,
             rtol=self.relative, atol=self.absolute, max_step=0.2 / self.model.fastest,
@@ -144,7 +145,7 @@ class _Legs:
 
 
 def _motion(model: TorsionalModel, region: int, sides: dict[int, _SmoothSide], period: float) -> Motion:
-    """Right side of the equation while a side touches, 1 or −1, or none, 0."""
+    """Right-hand side of the equation of motion while a side touches, 1 or −1, or none, 0."""
     side = sides.get(region, sides[1])
     damper = sides[1] if model.damped_apart else side
 
@@ -162,29 +163,29 @@ def _motion(model: TorsionalModel, region: int, sides: dict[int, _SmoothSide], p
 
 @dataclass(frozen=True, eq=False)
 class _Event:
-    """What SciPy's integrator stops at: a border of contact, or a turn of the depth."""
+    """Event at which SciPy's integrator stops: a border of contact, or a turn of the depth."""
 
     of: _SmoothSide
     period: float
     side: int
-    """1 or −1."""
+    """Side of the teeth: 1 or −1."""
     direction: float
-    """In which its value changes its sign."""
+    """Sign change at which the event stops the integration: 1 to positive, −1 to negative values."""
     turn: bool
     terminal: bool = True
 
     def __call__(self, t: float, y: Floats) -> float:
-        """The depth [mm] at a time [s] and a state (2,), or its change [mm/s]."""
+        """Depth [mm] at a time [s] and a state (2,), or its rate [mm/s] for a turn."""
         if self.turn:
             return self.of.sign * float(y[1]) - self.of.error_slope(t / self.period) / self.period
         return self.of.depth(t / self.period, float(y[0]))
 
 
 def _cubic(c: list[float], t: float) -> float:
-    """Of ascending powers."""
+    """Cubic polynomial at t; c: its coefficients (4,) by ascending powers."""
     return c[0] + t * (c[1] + t * (c[2] + t * c[3]))
 
 
 def _slope(c: list[float], t: float) -> float:
-    """Its derivative."""
+    """Derivative by t of the cubic polynomial with the coefficients c (4,) by ascending powers."""
     return c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])

@@ -18,10 +18,10 @@ from evolvent.dynamics.oscillator.stepping import STEP, advance
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
 Derivatives = Floats
-"""(2, 3): of s [mm] and v [mm/s] after a period, by s and v before it and by ln T."""
+"""(2, 3) derivatives of s [mm] and v [mm/s] after a mesh period, by s and v before it and by ln T."""
 BEYOND_MEASURE = 100.0
-"""Deflections of the mesh that no pair sees, over the static one and the swing of e: a motion that comes there goes on
-growing, as a mesh whose stiffness varies feeds more work in than a weak damper takes out."""
+"""Largest mesh deflection of a gear pair, over the static one and the swing of e. A motion beyond it goes on growing,
+as a mesh whose stiffness varies feeds more work in than a weak damper takes out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,24 +29,24 @@ class TorsionalModel:
     """A gear pair's inertia, damping and load on the force of its mesh."""
 
     mass: float
-    """m_e [t]."""
+    """Equivalent mass m_e [t]."""
     load: float
-    """F_0, the torque over the base radius [N]."""
+    """Static load F_0, the torque over the base radius [N]."""
     law: MeshLaw
-    """F(x, φ) of both sides of the teeth."""
+    """Mesh force F(x, φ) of both sides of the teeth."""
     teeth: int | None = field(default=None, kw_only=True)
-    """Of the pinion, by which messages say at which of its speeds something happens; None: they say the mesh period."""
+    """Number of teeth of the pinion, from which messages state its speed; None: they state the mesh period."""
     damping: float = 0.0
-    """c, of the mesh [N·s/mm]."""
+    """Damping c of the mesh [N·s/mm]."""
     damped_apart: bool = False
     """Whether c acts in free flight, too, as it does in He et al. (Eq. 15); then with ė of the loaded flanks wherever
     flanks touch."""
     ground_damping: float = 0.0
-    """c_g, of the shafts against the ground [N·s/mm]."""
+    """Damping c_g of the shafts against the ground [N·s/mm]."""
     bore_offset: float = 0.0
-    """How far the bores are ahead of s under the static load [mm]: elastic bodies, see `dynamics.one_degree`."""
+    """Lead of the bores over s under the static load [mm], on elastic bodies (`dynamics.one_degree`)."""
     bore_compliance: float = 0.0
-    """By how much more [mm/N] where the mesh force is below the load."""
+    """Further lead of the bores over s per force by which the mesh force is below the load [mm/N]."""
 
     def between_bores(self, displacement: Floats, force: Floats) -> Floats:
         """The displacement between the bores, the transmission error (k,) [mm], at displacements s and mesh forces
@@ -59,7 +59,7 @@ class TorsionalModel:
 
     @cached_property
     def oscillator(self) -> Oscillator:
-        """For compiled code."""
+        """Parameters of the equation of motion for compiled code."""
         return Oscillator(
             float(self.mass), float(self.damping), bool(self.damped_apart), float(self.ground_damping),
             float(self.load), self.law.front, self.law.back,
@@ -67,17 +67,18 @@ class TorsionalModel:
 
     @cached_property
     def fastest(self) -> float:
-        """Angular frequency [rad/s] on the stiffest mesh: what steps in time are chosen by."""
+        """Angular frequency [rad/s] on the stiffest mesh, from which time steps are chosen."""
         return float(np.sqrt(self.law.stiffest() / self.mass))
 
     @cached_property
     def reach(self) -> float:
-        """Largest deflection of the mesh [mm] that is still a motion of a gear pair, see `BEYOND_MEASURE`."""
+        """Largest deflection of the mesh [mm] that is still a motion of a gear pair (`BEYOND_MEASURE`)."""
         swing = max(float(np.ptp(side.offset[:, 0])) for side in (self.law.front, self.law.back))
         return BEYOND_MEASURE * (abs(self.load) / self.law.stiffest() + swing)
 
     def escaped(self, state: Floats) -> bool:
-        """Whether a state (2,) at phase 0 is beyond measure, or no number."""
+        """Whether a state (2,) at phase 0 is beyond `reach`, or faster than an oscillation of that size, or not a
+        number."""
         s, v = state
         depth = max(side.sign * s - side.offset[0, 0] for side in (self.law.front, self.law.back))
         return not (depth <= self.reach and abs(v) <= self.reach * self.fastest)
@@ -90,35 +91,36 @@ class TorsionalModel:
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """A mesh period, at phases (k + 1,)."""
+    """Motion over a mesh period, at phases (k + 1,)."""
 
     phases: Floats
-    """[mesh periods]."""
+    """(k + 1,) phases [mesh periods]."""
     displacement: Floats
-    """s [mm]."""
+    """(k + 1,) displacement s [mm]."""
     velocity: Floats
-    """ṡ [mm/s]."""
+    """(k + 1,) velocity ṡ [mm/s]."""
     side: Ints
-    """1 where the loaded flanks touch, −1 where the back flanks do, 0 where neither."""
+    """(k + 1,): 1 where the loaded flanks touch, −1 where the back flanks do, 0 where neither."""
     force: Floats
-    """Of the mesh, with its damping [N]; below 0 where the back flanks press, or the damper pulls at parting flanks."""
+    """(k + 1,) mesh force with damping [N]; below 0 where the back flanks press, or the damper pulls at parting
+    flanks."""
     error: Floats
-    """e of the loaded flanks [mm]."""
+    """(k + 1,) unloaded transmission error e of the loaded flanks [mm]."""
     transmission_error: Floats
-    """Displacement between the bores [mm]: s itself where bodies are rigid."""
+    """(k + 1,) displacement between the bores [mm]: s itself where bodies are rigid."""
     apart: float
     """Share of the period out of contact."""
     behind: float
-    """Share of it on the back flanks."""
+    """Share of the period on the back flanks."""
     smallest_force: float
     """Smallest mesh force [N] of these phases and of both sides of each instant at which contact begins or ends, where
     the damping force jumps."""
     largest_force: float
-    """Largest one of these [N]."""
+    """Largest mesh force [N] of these phases and of both sides of each instant at which contact begins or ends."""
 
     @property
     def separated(self) -> Bools:
-        """Where no side touches (k + 1,)."""
+        """(k + 1,) whether no side touches."""
         return self.side == 0
 
 
@@ -131,8 +133,8 @@ def period_map(model: TorsionalModel, period: float, state: Floats) -> tuple[Flo
 
 
 def history(model: TorsionalModel, period: float, state: Floats, phases: Floats | tuple[float, ...] = ()) -> History:
-    """What happens in the mesh period after a state (2,). phases: at which it is wanted, beside those at which the
-    force is not smooth."""
+    """Motion over the mesh period after a state (2,) at phase 0. phases: further ones at which the motion is wanted,
+    beside those at which the force is not smooth."""
     y, (stops, cells) = _with_derivatives(state), model.law.stops(phases)
     path = np.empty((len(stops), 5))
     apart, behind, low, high = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
@@ -143,12 +145,12 @@ def history(model: TorsionalModel, period: float, state: Floats, phases: Floats 
 
 
 def _with_derivatives(state: Floats) -> Floats:
-    """(8,)."""
+    """Integration state (8,) at phase 0, with the derivatives of a state (2,)."""
     y = np.zeros(SIZE)
     y[:2], y[2], y[6] = state, 1.0, 1.0
     return y
 
 
 def _longest(model: TorsionalModel, period: float) -> float:
-    """Longest step [mesh periods]."""
+    """Longest time step [mesh periods]."""
     return STEP / (model.fastest * period)

@@ -1,4 +1,4 @@
-"""What varies over the pitch in an excitation, in the units of its tables, with error bars.
+"""Curves of an excitation over the pitch, in the units of its tables, with error bars.
 
 The errors of the mesh are estimated as those of a run (`results.error_bars.estimation`): from the same positions under
 the same torques on elements of twice the size. Peak-to-peak values and harmonics do not depend on the mean: of them,
@@ -51,20 +51,22 @@ the size at 0.27, 0.38, 0.6 and 0.85 elements across the width."""
 
 @dataclass(frozen=True, eq=False)
 class CoarseExcitation:
-    """The excitation on the meshes of a coarse companion."""
+    """Excitation on the meshes of a coarse companion, with elements of twice the size."""
 
     excitation: MeshExcitation | None
-    """At the same positions under the same torques; None where it was not asked for or could not be solved."""
+    """Excitation at the same positions under the same torques; None where it was not asked for or could not be
+    solved."""
     order: int = 2
-    """Of the cells."""
+    """Polynomial order of the finite elements."""
     elements: tuple[float, ...] = ()
-    """(m,) elements of the finer meshes across the contact width, under each torque; empty where it is wide enough."""
+    """(m,) elements of the finer meshes across the contact width, under each torque; empty where the width is large
+    enough."""
     failure: str = ""
-    """Why it could not be solved, as a sentence; empty where it could."""
+    """Sentence on why the excitation could not be solved; empty where it could."""
 
 
 NO_COMPANION = CoarseExcitation(None)
-"""Where error bars are not asked for."""
+"""Companion of an excitation without error bars."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,15 +74,15 @@ class PitchCurve:
     """A quantity under one torque, at n equidistant positions of a pitch."""
 
     quantity: str
-    """As in excitation.csv."""
+    """Name of the quantity, as in excitation.csv."""
     values: Floats
-    """(n,) in its unit."""
+    """(n,) values in the unit of the quantity."""
     coarse: Floats | None
-    """(n,) the same on elements of twice the size; None where that is not known."""
+    """(n,) values on elements of twice the size; None where they are not known."""
     order: int
-    """Of the cells."""
+    """Polynomial order of the finite elements."""
     elements: float = math.inf
-    """Across the contact width."""
+    """Finite elements across the contact width."""
 
     @property
     def bars(self) -> Floats:
@@ -94,12 +96,12 @@ class PitchCurve:
         return float("nan") if self.coarse is None else self._compared(STIFFNESS).of_figure(figure)
 
     def varying_error(self, figure: Reduction) -> float:
-        """The same of a figure that does not depend on the mean of the curve."""
+        """Error by the mesh of a figure that does not depend on the mean of the curve; NaN where it is not known."""
         return float("nan") if self.coarse is None else self._compared(SHARING).of_varying(figure)
 
     @property
     def _halvings(self) -> float:
-        """How often elements would have to be halved to be as small as the contact is wide."""
+        """Number of halvings after which the elements would be as small as the contact is wide."""
         return max(0.0, -math.log2(self.elements / NARROW))
 
     def _compared(self, factors: Mapping[int, float]) -> Compared:
@@ -110,12 +112,12 @@ class PitchCurve:
 
     @cached_property
     def mean_error(self) -> float:
-        """Of the mean over the pitch, mesh and spacing of positions."""
+        """Error of the mean over the pitch, by the mesh and by the spacing of positions."""
         return self.mesh_error(lambda values: float(np.mean(values))) + max(thinned_mean(self.values), self._bent)
 
     @cached_property
     def peak_to_peak_error(self) -> float:
-        """Of the largest less the smallest value."""
+        """Error of the peak-to-peak value, by the mesh and by the spacing of positions."""
         size = float(np.ptp(self.values))
         halves = [abs(float(np.ptp(self.values[kept])) - size) for kept in self._halves]
         return self.varying_error(lambda values: float(np.ptp(values))) + max(
@@ -124,12 +126,13 @@ class PitchCurve:
 
     @property
     def harmonics(self) -> tuple[Floats, Floats]:
-        """Amplitudes and phases [rad], see `mesh_harmonics`: as many as the positions hold, at most `COUNT`."""
+        """Amplitudes and phases [rad] of the mesh harmonics (`mesh_harmonics`): as many as the positions hold, at most
+        `COUNT`."""
         return mesh_harmonics(self.values, self._count)
 
     @cached_property
     def amplitude_errors(self) -> Floats:
-        """Of these amplitudes."""
+        """Errors of the amplitudes of the mesh harmonics, by the mesh and by the spacing of positions."""
         amplitudes = self.harmonics[0]
         mesh = [self.varying_error(partial(_amplitude, r)) for r in range(1, self._count + 1)]
         halves = [np.abs(_thinned_amplitudes(self.values, kept, self._count) - amplitudes) for kept in self._halves]
@@ -141,7 +144,7 @@ class PitchCurve:
 
     @property
     def _bent(self) -> float:
-        """What jumps or kinks at unknown places between the positions make of the mean."""
+        """Error of the mean by jumps or kinks at unknown places between the positions."""
         return BENDS[self.quantity] * pitch_bends(self.values)
 
     @property
@@ -168,7 +171,7 @@ def pitch_curves(excitation: MeshExcitation, companion: CoarseExcitation) -> Ite
 
 
 def _amplitude(harmonic: int, values: Floats) -> float:
-    """Of one mesh harmonic."""
+    """Amplitude of one mesh harmonic of values (n,) over the pitch."""
     return float(mesh_harmonics(values, harmonic)[0][-1])
 
 

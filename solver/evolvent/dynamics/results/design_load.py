@@ -1,4 +1,4 @@
-"""The load that a relief fits: under which the peak-to-peak transmission error is least (Harris, 1958)."""
+"""Design load of a tooth relief: that under which the peak-to-peak transmission error is least (Harris, 1958)."""
 
 from __future__ import annotations
 
@@ -17,28 +17,31 @@ LOADS = 400
 
 @dataclass(frozen=True)
 class ExcitationFacts:
-    """What an excitation is of, and its design load: excitation.json."""
+    """Scene, mesh and torques of an excitation, and its design load: excitation.json."""
 
     title: str
-    """Of the scene."""
+    """Title of the scene."""
     mesh_level: str
-    """Of the scene's meshes."""
+    """Mesh level of the scene."""
     positions: int
-    """Of a pitch."""
+    """Number of positions of a pitch."""
     torques_Nm: tuple[float, ...]
-    """Under which it was solved, ascending."""
+    """Torques under which the excitation was solved, ascending."""
     design_torque_Nm: float | None
-    """Under which the peak-to-peak transmission error is least, on the mesh force over deflection between the torques
-    that were solved; null where that is the lightest or the heaviest of them, or where there is one torque only."""
+    """Torque under which the peak-to-peak transmission error is least, on the mesh force over deflection between the
+    torques that were solved; null where that is the lightest or the heaviest of them, or where there is one torque
+    only."""
     design_peak_to_peak_um: float | None
-    """The peak-to-peak transmission error there."""
+    """Peak-to-peak transmission error under the design torque."""
     design_peak_to_peak_um_error: float | None
-    """Its estimated error, that of the nearest torque; null without error bars."""
+    """Estimated error of the peak-to-peak transmission error under the design torque: that of the nearest torque; null
+    without error bars."""
     design_from_Nm: float | None
-    """Lightest torque around it whose peak-to-peak value is not larger by more than that error: which torque between
-    this and the next one is the design load is not known. Null without error bars."""
+    """Lightest torque around the design torque whose peak-to-peak value is larger by no more than the error: which
+    torque from here to design_to_Nm is the design load is not known. Null without error bars."""
     design_to_Nm: float | None
-    """Heaviest one."""
+    """Heaviest torque around the design torque whose peak-to-peak value is larger by no more than the error; null
+    without error bars."""
 
 
 EXCITATION_FACTS = Record("excitation.json", ExcitationFacts)
@@ -47,7 +50,7 @@ EXCITATION_FACTS = Record("excitation.json", ExcitationFacts)
 def excitation_facts(
     title: str, level: str, excitation: MeshExcitation, radius: float, companion: CoarseExcitation
 ) -> ExcitationFacts:
-    """radius: base radius of the gear that holds the torque [mm]."""
+    """Facts of an excitation. radius: base radius of the gear that holds the torque [mm]."""
     forces = excitation.loaded.forces
     torques = tuple(float(1e-3 * radius * force) for force in forces)
     count = len(excitation.unloaded_error)
@@ -61,7 +64,8 @@ def excitation_facts(
 def _design(
     excitation: MeshExcitation, radius: float, companion: CoarseExcitation
 ) -> tuple[float | None, float | None, float | None, float | None, float | None]:
-    """Torque [N·m], peak-to-peak value and its error [µm], and the range of torques."""
+    """Design torque [N·m], peak-to-peak value and its error [µm], and the range of torques [N·m] in which the design
+    load lies."""
     forces = excitation.loaded.forces
 
     def size(force: float) -> float:

@@ -1,4 +1,4 @@
-"""Motions at chosen speeds over one repeat: their table."""
+"""Table of motions at chosen speeds over one repeat."""
 
 from __future__ import annotations
 
@@ -22,26 +22,27 @@ class HistoryRow:
     """A line of histories.csv: an instant of a motion."""
 
     speed_rpm: float
-    """Of the pinion, one of dynamics.histories_rpm, or dynamics.operating_rpm."""
+    """Speed of the pinion: one of dynamics.histories_rpm, or dynamics.operating_rpm."""
     way: str
-    """up or down, as in response.csv."""
+    """Direction in which the pair has come to the speed: up or down, as in response.csv."""
     phase: float
-    """In mesh periods, over the periods after which the motion repeats; sixteen of one that does not."""
+    """Phase in mesh periods, over the periods after which the motion repeats; over sixteen of one that does not."""
     time_ms: float
-    """Since phase 0."""
+    """Time since phase 0."""
     transmission_error_um: float
-    """s, the dynamic transmission error with the unloaded one in it."""
+    """Dynamic transmission error s, with the unloaded one in it."""
     elastic_um: float
-    """s − e: how far the loaded flanks are beyond first contact; below 0 they are apart. With elastic bodies s is taken
-    between the bores, which swing beside the mass: `contact` says what touches."""
+    """Deflection s − e: how far the loaded flanks are beyond first contact; below 0 they are apart. With elastic bodies
+    s is taken between the bores, which swing beside the mass: `contact` says what touches."""
     velocity_mm_per_s: float
-    """ds/dt; with elastic bodies of the mass on the mesh."""
+    """Velocity ds/dt; with elastic bodies that of the mass on the mesh."""
     force_N: float
-    """Of the mesh, damping included; where contact begins or ends it jumps between two lines."""
+    """Mesh force, damping included; it jumps between two lines where contact begins or ends."""
     contact: int
     """1 where the loaded flanks touch, −1 where the back flanks do, 0 where none do."""
     displacement_um: float
-    """Of the mass on the mesh, whose rate velocity_mm_per_s is: that of transmission_error_um with rigid bodies."""
+    """Displacement of the mass on the mesh, whose rate is velocity_mm_per_s; transmission_error_um with rigid
+    bodies."""
 
 
 HISTORIES = Table("histories.csv", HistoryRow)
@@ -49,33 +50,33 @@ HISTORIES = Table("histories.csv", HistoryRow)
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """What a pair does at a speed, one mesh period after the other."""
+    """Motion of a pair at one speed, one mesh period after the other."""
 
     speed: float
-    """Of the pinion [r/min]."""
+    """Speed of the pinion [r/min]."""
     way: str
-    """up or down."""
+    """Direction in which the pair has come to the speed: up or down."""
     period: float
-    """Of the mesh [s]."""
+    """Mesh period [s]."""
     repeats: int
-    """As in `Running`."""
+    """Mesh periods after which the motion repeats; 0 where it does not, as in `Running`."""
     paths: tuple[History, ...]
-    """Its mesh periods, until it repeats."""
+    """Histories of the mesh periods, until the motion repeats."""
 
     @property
     def phases(self) -> Floats:
-        """(n,) from 0 [mesh periods], each once."""
+        """(n,) phases from 0 on [mesh periods], each once."""
         inner = [path.phases[:-1] + ahead for ahead, path in enumerate(self.paths)]
         return np.append(np.concatenate(inner), float(len(self.paths)))
 
     def over(self, name: str) -> Floats:
-        """A field of the paths at these phases (n,)."""
+        """A field of the histories at all phases (n,)."""
         inner = [getattr(path, name)[:-1] for path in self.paths]
         return np.append(np.concatenate(inner), getattr(self.paths[-1], name)[-1])
 
 
 def motions(drive: Drive, swept: SpeedSweep, speeds: Sequence[float]) -> list[Motion]:
-    """Up and down at each of these speeds of the sweep [r/min]."""
+    """Motions running up and down at each of these speeds of the sweep [r/min]."""
     known = np.array([speed_of(drive, float(period)) for period in swept.periods])
     found, phases = [], np.arange(SAMPLES) / SAMPLES
     for speed in speeds:
@@ -89,7 +90,7 @@ def motions(drive: Drive, swept: SpeedSweep, speeds: Sequence[float]) -> list[Mo
 
 
 def history_rows(found: Iterable[Motion]) -> Iterator[HistoryRow]:
-    """One motion after the other."""
+    """Rows of histories.csv, one motion after the other."""
     for motion in found:
         names = "transmission_error", "error", "velocity", "force", "side", "displacement"
         for phase, s, e, velocity, force, side, displacement in zip(motion.phases, *map(motion.over, names)):

@@ -1,4 +1,4 @@
-"""A pair at its operating speed on disk: its excitation, its motion over time, its figures."""
+"""Files of a pair at its operating speed: its excitation, its motion over time, its figures."""
 
 from __future__ import annotations
 

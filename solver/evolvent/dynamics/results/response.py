@@ -22,51 +22,52 @@ class ResponseRow:
     """A line of response.csv: a speed, run up to or down to."""
 
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     way: str
-    """up or down: from which side the pair has come to the speed, slowly."""
+    """Direction in which the pair has come to the speed, slowly: up or down."""
     repeats: int
     """Mesh periods after which the motion repeats; 0 where it does not within sixteen, has not settled after a thousand
     or more, or grows beyond a hundred static deflections. Forces and times are then those of 500 meshes."""
     jumped: bool
-    """Whether it left the branch of steady states, or came to another part of it, since the speed before."""
+    """Whether the pair left the branch of steady states, or came to another part of it, since the speed before."""
     equivalent_amplitude_um: float
     """√ΣA_r² of the first three mesh harmonics of s = r_b1 θ_1 − r_b2 θ_2, with the unloaded transmission error in it;
     the rms value of these is 1/√2 of it."""
     equivalent_amplitude_um_error: float
-    """Its estimated error by the mesh and by the spacing of positions; NaN where there is no coarse companion
-    (`output.error_bars`). Large beside resonances and jumps that move with the excitation."""
+    """Estimated error of the equivalent amplitude by the mesh and by the spacing of positions; NaN where there is no
+    coarse companion (`output.error_bars`). Large beside resonances and jumps that move with the excitation."""
     elastic_equivalent_amplitude_um: float
-    """The same of s − e, without it."""
+    """√ΣA_r² of the first three mesh harmonics of s − e, without the unloaded transmission error e."""
     harmonic_1_um: float
-    """Amplitude of the mesh harmonic of s, like the next four."""
+    """Amplitude of the first mesh harmonic of s."""
     harmonic_2_um: float
-    """Second."""
+    """Amplitude of the second mesh harmonic of s."""
     harmonic_3_um: float
-    """Third."""
+    """Amplitude of the third mesh harmonic of s."""
     harmonic_4_um: float
-    """Fourth."""
+    """Amplitude of the fourth mesh harmonic of s."""
     harmonic_5_um: float
-    """Fifth."""
+    """Amplitude of the fifth mesh harmonic of s."""
     force_harmonic_1_N: float
-    """Amplitude of the mesh harmonic of the mesh force, like the next four; between them: spectrum.csv."""
+    """Amplitude of the first mesh harmonic of the mesh force; lines between the harmonics: spectrum.csv."""
     force_harmonic_2_N: float
-    """Second."""
+    """Amplitude of the second mesh harmonic of the mesh force."""
     force_harmonic_3_N: float
-    """Third."""
+    """Amplitude of the third mesh harmonic of the mesh force."""
     force_harmonic_4_N: float
-    """Fourth."""
+    """Amplitude of the fourth mesh harmonic of the mesh force."""
     force_harmonic_5_N: float
-    """Fifth."""
+    """Amplitude of the fifth mesh harmonic of the mesh force."""
     largest_force_N: float
     """Largest mesh force, damping included, on both sides of the instants at which contact begins or ends."""
     smallest_force_N: float
-    """Smallest one: below 0 where back flanks press, or the damper pulls."""
+    """Smallest mesh force, damping included: below 0 where back flanks press, or the damper pulls."""
     dynamic_factor: float
     """Largest mesh force of this motion over the static one; with the damping that the scene gives, and of all teeth in
     contact: not K_v of ISO 6336-1."""
     dynamic_factor_error: float
-    """Its estimated error, likewise."""
+    """Estimated error of the dynamic factor by the mesh and by the spacing of positions; NaN where there is no coarse
+    companion (`output.error_bars`)."""
     dynamic_factor_iso: float
     """K_v of ISO 6336-1:2006, Method B, at this speed: by the deviations and the mass that the scene gives, without its
     damping; the same up and down. NaN without both deviations (`dynamics.base_pitch_deviation_um`,
@@ -82,96 +83,102 @@ class BranchRow:
     """A line of branch.csv: a steady state, stable or not, in the order along the branch."""
 
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     equivalent_amplitude_um: float
-    """As in response.csv."""
+    """Equivalent amplitude of the transmission error, as in response.csv."""
     stable: bool
-    """Whether small disturbances die out."""
+    """Whether the steady state is stable: small disturbances die out."""
     fold: bool
     """Whether the branch turns back here: a pair that follows the speed jumps."""
     connected: bool
-    """Whether the row before is the next one on the branch; false where it could not be followed on, and another piece
-    of it begins."""
+    """Whether the row before is the next one on the branch; false where the branch could not be followed on, and
+    another piece of it begins."""
 
 
 @dataclass(frozen=True)
 class DriveSummary:
-    """dynamics.json: what the vibration is computed from, and the speeds of its jumps."""
+    """Parameters from which the vibration is computed, and the speeds of its jumps: dynamics.json."""
 
     equivalent_mass_kg: float
-    """m_e, along the line of action."""
+    """Equivalent mass m_e along the line of action."""
     pinion_inertia_kg_m2: float
-    """Of the pinion."""
+    """Moment of inertia of the pinion."""
     wheel_inertia_kg_m2: float
-    """Of the wheel."""
+    """Moment of inertia of the wheel."""
     mean_stiffness_N_per_um: float
     """Stiffness of the whole face under the torque, mean over the pitch, with what gives way in series: the secant one
     where dynamics.mesh is secant, else the tangent one."""
     mean_stiffness_N_per_um_error: float
-    """Its estimated error by the mesh and by the spacing of positions; null where there is no coarse companion
-    (`output.error_bars`)."""
+    """Estimated error of the mean stiffness by the mesh and by the spacing of positions; null where there is no coarse
+    companion (`output.error_bars`)."""
     natural_speed_rpm: float
-    """Of the pinion, at which the mesh frequency is the natural one at that stiffness, on rigid or elastic bodies."""
+    """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness, on rigid or
+    elastic bodies."""
     natural_speed_rpm_error: float
-    """Its estimated error by that of the stiffness."""
+    """Estimated error of the natural speed by that of the mean stiffness."""
     bodies: str
-    """elastic: gear bodies give way with their inertia where it is; rigid: all inertia is at the bores."""
+    """Model of the gear bodies: elastic, they give way with their inertia where it is; or rigid, with all inertia at
+    the bores."""
     rigid_natural_speed_rpm: float
-    """The natural speed with all inertia at the bores: too low, the more the smaller these are. That of
-    natural_speed_rpm where bodies are rigid."""
+    """Natural speed with all inertia at the bores: too low, the more the smaller these are. It is natural_speed_rpm
+    where bodies are rigid."""
     moving_mass_kg: float
-    """Mass of the one degree of freedom: m_e, with elastic bodies more by what they lag behind."""
+    """Mass of the one degree of freedom: m_e; with elastic bodies more, by what their elastic modes lag behind."""
     moving_stiffness_N_per_um: float
-    """Mean stiffness in motion: that above, with elastic bodies stiffer, as their own inertia holds them and not their
-    bores."""
+    """Mean stiffness in motion: mean_stiffness_N_per_um; with elastic bodies more, as their own inertia holds them and
+    not their bores."""
     body_frequency_Hz: float | None
     """Lowest frequency of the bodies' own vibration on the mesh, which the one degree of freedom leaves out: where a
     low mesh harmonic has it the motion is larger than computed. Null for rigid bodies."""
     static_force_N: float
-    """Torque over base radius."""
+    """Static mesh force: torque over base radius."""
     damping_N_s_per_mm: float
-    """Of the mesh."""
+    """Damping coefficient of the mesh."""
     backlash_um: float
-    """Along the line of action, from flank to flank."""
+    """Backlash along the line of action, from flank to flank."""
     mesh: str
     """Model of the mesh force, as dynamics.mesh."""
     damping_ratio: float
-    """As in the scene, like the next two."""
+    """Damping ratio of the mesh, as in the scene."""
     damped_apart: bool
-    """Whether the mesh's damping acts in free flight."""
+    """Whether the damping of the mesh acts in free flight, as in the scene."""
     ground_damping_ratio: float
-    """Of the shafts against the ground."""
+    """Damping ratio of the shafts against the ground, as in the scene."""
     mesh_frequency_Hz: float
-    """At the natural speed."""
+    """Mesh frequency at the natural speed."""
     folds_rpm: tuple[float, ...]
-    """Speeds at which the branch of steady states turns back, each once, in the order along it."""
+    """Speeds at which the branch of steady states turns back, each once, in the order along the branch."""
     jumps_up_rpm: tuple[float, ...]
     """Speeds at which a pair that runs up leaves the branch: at a fold, or where the steady state loses its stability
     otherwise; in the order in which it comes there."""
     jumps_up_rpm_error: tuple[float, ...]
-    """Their estimated errors by the mesh and by the spacing of positions; null where there is no coarse companion, and
-    of a jump that is not found on its mesh, or from every other position."""
+    """Estimated errors of jumps_up_rpm by the mesh and by the spacing of positions; null where there is no coarse
+    companion, and of a jump that is not found on its mesh, or from every other position."""
     jumps_down_rpm: tuple[float, ...]
-    """The same of a pair that runs down."""
+    """Speeds at which a pair that runs down leaves the branch: at a fold, or where the steady state loses its stability
+    otherwise; in the order in which it comes there."""
     jumps_down_rpm_error: tuple[float, ...]
-    """Their estimated errors, likewise."""
+    """Estimated errors of jumps_down_rpm by the mesh and by the spacing of positions; null where there is no coarse
+    companion, and of a jump that is not found on its mesh, or from every other position."""
     heaviest_torque_share: float | None
-    """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface went
-    on straight. Null with another model of the mesh."""
+    """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface was
+    extrapolated linearly. Null with another model of the mesh."""
     iso_single_stiffness_N_per_mm_um: float
-    """c' of ISO 6336-1:2006, clause 9, per mm of face width, like the next one."""
+    """Single stiffness c' of ISO 6336-1:2006, clause 9, per mm of face width."""
     iso_mesh_stiffness_N_per_mm_um: float
-    """c_γα of the same; a secant of teeth on solid discs or, by C_R, on webs, not the stiffness that was computed."""
+    """Mesh stiffness c_γα of ISO 6336-1:2006, clause 9, per mm of face width; a secant of teeth on solid discs or, by
+    C_R, on webs, not the stiffness that was computed."""
     iso_resonance_speed_rpm: float
-    """n_E1 of ISO 6336-1:2006, clause 6: of the pinion, by that stiffness and the mass above."""
+    """Resonance speed n_E1 of the pinion by ISO 6336-1:2006, clause 6, from iso_mesh_stiffness_N_per_mm_um and the
+    equivalent mass."""
     iso_relief_term: float
-    """B_k of the same: what tip relief leaves of the deflection, 1 without one."""
+    """B_k of ISO 6336-1:2006, clause 6: what tip relief leaves of the deflection, 1 without one."""
     iso_main_resonance_rpm: tuple[float, float]
-    """Speeds of the pinion between which that standard has its main resonance."""
+    """Speeds of the pinion between which ISO 6336-1:2006 has its main resonance."""
     iso_base_pitch_deviation_um: float | None
-    """f_pb, as in the scene; null where it is not known, like the next one."""
+    """Base pitch deviation f_pb, as in the scene; null where it is not known."""
     iso_profile_deviation_um: float | None
-    """f_fα, likewise."""
+    """Profile form deviation f_fα, as in the scene; null where it is not known."""
 
 
 RESPONSE, BRANCH = Table("response.csv", ResponseRow), Table("branch.csv", BranchRow)
@@ -179,12 +186,13 @@ DYNAMICS = Record("dynamics.json", DriveSummary)
 
 
 def speed_of(drive: Drive, period: float) -> float:
-    """[r/min] of the pinion at a mesh period [s]."""
+    """Speed of the pinion [r/min] at a mesh period [s]."""
     return 60.0 / (drive.teeth * period)
 
 
 def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
-    """Of all speeds, "up" and "down"; of a motion that grows beyond measure the last mesh period within."""
+    """Responses at all speeds, "up" and "down"; of a motion that grows beyond measure that of the last mesh period
+    within."""
     return {
         way: [
             response(drive.model, float(period), run.motion.state, 1 if run.escaped else run.repeats)
@@ -197,7 +205,7 @@ def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
 def response_rows(
     drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], iso: MethodB, errors: VibrationErrors
 ) -> Iterator[ResponseRow]:
-    """Up, then down, at ascending speeds."""
+    """Rows of response.csv: up, then down, at ascending speeds."""
     for way, runs in (("up", swept.up), ("down", swept.down)):
         bars = UM * errors.amplitude[way], errors.dynamic_factor[way]
         for period, run, each, amplitude_error, factor_error in zip(swept.periods, runs, found[way], *bars):
@@ -216,7 +224,7 @@ def response_rows(
 
 
 def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
-    """From the lowest speed to the highest, through all folds."""
+    """Rows of branch.csv: from the lowest speed to the highest, through all folds."""
     gaps = swept.branch.gaps
     for i, (state, stable) in enumerate(zip(swept.branch.points, swept.branch.stable)):
         size = response(drive.model, state.period, state.state).equivalent_amplitude
@@ -228,7 +236,7 @@ def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
 
 
 def jumps(drive: Drive, runs: Iterable[Running]) -> tuple[float, ...]:
-    """Speeds [r/min] at which a pair leaves the branch on its way through motions."""
+    """Speeds [r/min] at which a pair leaves the branch, in the order of its motions."""
     return tuple(speed_of(drive, run.left_at) for run in runs if run.left_at is not None)
 
 
@@ -236,7 +244,8 @@ def summary(
     drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: float, heaviest: float, iso: MethodB,
     errors: VibrationErrors,
 ) -> DriveSummary:
-    """largest: mesh force of all speeds; heaviest: of the force surface's torques [N]."""
+    """Summary of a vibration. largest: largest mesh force of all speeds [N]; heaviest: largest mesh force of the force
+    surface's torques [N]."""
     pinion, wheel = settings.inertias
     folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
     begin, end = iso.main_resonance
@@ -263,10 +272,10 @@ def summary(
 
 
 def _different(speeds: Iterable[float]) -> tuple[float, ...]:
-    """Each once, to six digits: pieces of the branch may be followed over the same fold."""
+    """Speeds without repetitions, to six digits: pieces of the branch may be followed over the same fold."""
     return tuple({float(f"{speed:.6g}"): speed for speed in speeds}.values())
 
 
 def largest_force(found: dict[str, list[Response]]) -> float:
-    """Of all speeds, both ways [N]."""
+    """Largest mesh force of all speeds, running up and down [N]."""
     return float(np.max([each.largest_force for runs in found.values() for each in runs]))

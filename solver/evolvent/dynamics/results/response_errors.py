@@ -34,41 +34,41 @@ from evolvent_meshes.arrays import Floats
 
 WAYS = "up", "down"
 SPACING_FACTOR = 0.5
-"""Of the difference to each half of the positions: their mean, see above. With the first half alone, 14 of 86 bars of
-the dynamic factor of He's pair at 20 positions were too small, by up to 19 times."""
+"""Factor of the difference to each half of the positions, so that the mean of both counts. With the first half alone,
+14 of 86 bars of the dynamic factor of He's pair at 20 positions were too small, by up to 19 times."""
 FEWEST_POSITIONS = 6
-"""Of which every other one still makes an excitation."""
+"""Least number of positions of which every other one still makes an excitation."""
 SAME_JUMP = 0.1
-"""Part by which the speeds of a jump on two excitations differ at most; superharmonic resonances up to the fifth lie
-twice as far apart."""
+"""Largest relative difference between the speeds of a jump on two excitations; superharmonic resonances up to the fifth
+lie twice as far apart."""
 
 
 @dataclass(frozen=True, eq=False)
 class Vibration:
-    """What is compared of a pair's vibration over n speeds."""
+    """Figures of a pair's vibration over n speeds that are compared between excitations."""
 
     drive: Drive
-    """The pair."""
+    """Oscillator of the pair."""
     found: dict[str, list[Response]]
-    """"up" and "down", n each, as by `response.responses`."""
+    """"up" and "down": n responses each, as by `response.responses`."""
     jumps: dict[str, tuple[float, ...]]
     """"up" and "down": speeds at which the pair leaves the branch [r/min], in the order in which it comes there."""
 
 
 @dataclass(frozen=True, eq=False)
 class OtherVibration:
-    """The vibration through the same speeds on another excitation."""
+    """Vibration through the same speeds on another excitation."""
 
     what: str
-    """The excitation, as in "on elements of twice the size"."""
+    """Name of the excitation, as in "on elements of twice the size"."""
     remedy: str
-    """What to change where it is too far off."""
+    """Remedy, as a sentence, where the vibration on this excitation is too far off."""
     factor: float
-    """Error of a figure over its difference."""
+    """Error of a figure over its difference between both excitations."""
     vibration: Vibration | None
-    """None where it could not be computed."""
+    """Vibration on the other excitation; None where it could not be computed."""
     failure: str = ""
-    """Why not; empty where it could."""
+    """Reason why the vibration could not be computed; empty where it could."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,21 +76,23 @@ class VibrationErrors:
     """Error bars of a pair's vibration over n speeds; NaN where they are not known."""
 
     amplitude: dict[str, Floats]
-    """"up" and "down": (n,) of the equivalent amplitude [mm]."""
+    """"up" and "down": (n,) errors of the equivalent amplitude [mm]."""
     dynamic_factor: dict[str, Floats]
-    """"up" and "down": (n,)."""
+    """"up" and "down": (n,) errors of the dynamic factor."""
     jumps: dict[str, tuple[float, ...]]
-    """"up" and "down": of the speeds of jumps [r/min]; NaN of those that are not found on another excitation, too."""
+    """"up" and "down": errors of the speeds of jumps [r/min]; NaN of jumps that are not found on another excitation,
+    too."""
     mean_stiffness: float
-    """[N/mm]."""
+    """Error of the mean stiffness [N/mm]."""
     natural_speed: float
-    """[r/min]."""
+    """Error of the natural speed [r/min]."""
     said: tuple[str, ...] = ()
-    """What a reader of them has to know."""
+    """Sentences on missing error bars, and on jumps that are found on one excitation alone."""
 
 
 def vibration_errors(own: Vibration, others: Sequence[OtherVibration], mean_stiffness: float) -> VibrationErrors:
-    """Of a vibration that was computed on other excitations, too; unknown where there are none, or one of them failed.
+    """Error bars of a vibration that was computed on other excitations, too; unknown where there are none, or one of
+    them failed.
 
     mean_stiffness: its error [N/mm], see `mean_stiffness_error`.
     """
@@ -106,8 +108,8 @@ def vibration_errors(own: Vibration, others: Sequence[OtherVibration], mean_stif
 
 
 def _natural_speed_error(drive: Drive, mean_stiffness: float) -> float:
-    """[r/min], of an error of the mean stiffness [N/mm]. The speed is in proportion to the root of the stiffness in
-    motion, whose compliance is off by as much as that in statics."""
+    """Error of the natural speed [r/min] by an error of the mean stiffness [N/mm]. The speed is in proportion to the
+    root of the stiffness in motion, whose compliance is off by as much as that in statics."""
     relative = mean_stiffness * drive.moving_stiffness / drive.mean_stiffness**2
     return 0.5 * relative * drive.natural_speed
 
@@ -116,9 +118,9 @@ def mean_stiffness_error(
     excitation: MeshExcitation, companion: CoarseExcitation, load: float, series_stiffness: float,
     quantity: str = TANGENT,
 ) -> float:
-    """[N/mm] of `Drive.mean_stiffness` under a load [N], by mesh and spacing; NaN without a companion. That of
-    harmonics.csv, where nothing gives way in series (series_stiffness: [N/mm], infinite then). quantity: the stiffness
-    that it is the mean of, TANGENT or SECANT."""
+    """Error [N/mm] of `Drive.mean_stiffness` under a load [N], by mesh and spacing; NaN without a companion. It is that
+    of harmonics.csv where nothing gives way in series (series_stiffness: [N/mm], infinite then). quantity: the
+    stiffness that is averaged, TANGENT or SECANT."""
 
     def values(mesh: MeshExcitation) -> Floats:
         depth, tangent = (mesh if np.isinf(series_stiffness) else mesh.in_series(series_stiffness)).under(load)
@@ -161,7 +163,7 @@ def same_jumps(speeds: Sequence[float], others: Sequence[float]) -> Floats:
 def _error(
     own: Vibration, others: Sequence[OtherVibration], way: str, figure: Callable[[Drive, Response], float]
 ) -> Floats:
-    """(n,) of a figure on one way."""
+    """Errors (n,) of a figure at all speeds, running one way."""
 
     def values(of: Vibration) -> Floats:
         return np.array([figure(of.drive, each) for each in of.found[way]])
@@ -174,7 +176,7 @@ def _error(
 
 
 def _jump_errors(speeds: Sequence[float], others: Sequence[OtherVibration], way: str) -> Floats:
-    """(k,) of the speeds of jumps (k,)."""
+    """Errors (k,) of the speeds of jumps (k,), running one way."""
     total = np.full(len(speeds), 0.0 if others else np.nan)
     for other in others:
         there = () if other.vibration is None else other.vibration.jumps[way]
@@ -183,7 +185,7 @@ def _jump_errors(speeds: Sequence[float], others: Sequence[OtherVibration], way:
 
 
 def _said(own: Vibration, other: OtherVibration) -> list[str]:
-    """Why there are no error bars, or which jumps are on one of both excitations alone."""
+    """Sentence on why there are no error bars, or on jumps that are found on one of both excitations alone."""
     if other.vibration is None:
         return [f"response.csv: no error bars, as the vibration {other.what} was not found: {other.failure}"]
     parts = []
@@ -199,7 +201,7 @@ def _said(own: Vibration, other: OtherVibration) -> list[str]:
 
 
 def _without(speeds: Sequence[float], others: Sequence[float]) -> str:
-    """The jumps that are not among the others, with their verb; empty where all are."""
+    """Clause on the jumps that are not among the others, with their verb; empty where all are."""
     alone = [f"{each:.0f}" for each, same in zip(speeds, same_jumps(speeds, others)) if np.isnan(same)]
     if not alone:
         return ""

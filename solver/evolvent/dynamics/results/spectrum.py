@@ -17,14 +17,14 @@ class SpectrumRow:
     """A line of spectrum.csv: a line of the spectrum at a speed."""
 
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     way: str
-    """up or down, as in response.csv."""
+    """Direction in which the pair has come to the speed: up or down, as in response.csv."""
     order: float
     """Frequency over that of the mesh: whole up to 8; halves of a motion that repeats after two meshes, and so on. One
     that does not repeat has lines a sixteenth apart, of sixteen mesh periods without a window."""
     frequency_Hz: float
-    """Order times pinion speed times its teeth."""
+    """Frequency of the line: order times speed of the pinion times its number of teeth."""
     force_N: float
     """Amplitude of the mesh force, damping included."""
     transmission_error_um: float
@@ -35,7 +35,7 @@ SPECTRUM = Table("spectrum.csv", SpectrumRow)
 
 
 def spectrum_rows(drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]]) -> Iterator[SpectrumRow]:
-    """Up, then down, at ascending speeds, each with ascending orders."""
+    """Rows of spectrum.csv: up, then down, at ascending speeds, each with ascending orders."""
     for way, responses in found.items():
         for period, each in zip(swept.periods, responses, strict=True):
             speed, lines = speed_of(drive, float(period)), each.spectrum

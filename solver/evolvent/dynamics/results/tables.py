@@ -21,7 +21,7 @@ from evolvent.dynamics.results.curves import (
 from evolvent.results.tables.table import Table
 
 NO_TORQUE = 0.0
-"""Of the unloaded transmission error [N·m]."""
+"""Torque under which the unloaded transmission error is tabulated [N·m]."""
 
 
 @dataclass(frozen=True)
@@ -31,23 +31,26 @@ class ExcitationRow:
     pinion_angle_deg: float
     """Rotation of the pinion; 0: tooth pair 0 touches at the pitch point, in the mid-face section."""
     torque_Nm: float
-    """On the gear that the scene names."""
+    """Torque on the gear that the scene names."""
     mesh_force_N: float
-    """That torque over the base radius, in the transverse section."""
+    """Mesh force: the torque over the base radius, in the transverse section."""
     unloaded_transmission_error_um: float
-    """e: r_b1 φ_1 − r_b2 φ_2 at which the flanks just touch, by geometry, within 1 nm."""
+    """Unloaded transmission error e: r_b1 φ_1 − r_b2 φ_2 at which the flanks just touch, by geometry, within 1 nm."""
     transmission_error_um: float
-    """The same under the torque, without friction."""
+    """Transmission error r_b1 φ_1 − r_b2 φ_2 under the torque, without friction."""
     transmission_error_um_error: float
-    """Its estimated error by the mesh; NaN where there is no coarse companion (`output.error_bars`)."""
+    """Estimated error of the transmission error by the mesh; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     tangent_stiffness_N_per_um: float
-    """Change of the mesh force by the transmission error, of the whole face."""
+    """Tangent mesh stiffness: change of the mesh force by the transmission error, of the whole face."""
     tangent_stiffness_N_per_um_error: float
-    """Its estimated error by the mesh."""
+    """Estimated error of the tangent stiffness by the mesh; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     secant_stiffness_N_per_um: float
-    """Mesh force over what the torque adds to the unloaded transmission error."""
+    """Secant mesh stiffness: mesh force over what the torque adds to the unloaded transmission error."""
     secant_stiffness_N_per_um_error: float
-    """Its estimated error by the mesh."""
+    """Estimated error of the secant stiffness by the mesh; NaN where there is no coarse companion
+    (`output.error_bars`)."""
 
 
 @dataclass(frozen=True)
@@ -55,25 +58,28 @@ class HarmonicRow:
     """A line of harmonics.csv: a mesh harmonic of a quantity under a torque."""
 
     quantity: str
-    """As in excitation.csv."""
+    """Name of the quantity, as in excitation.csv."""
     torque_Nm: float
-    """0 of the unloaded transmission error."""
+    """Torque on the gear that the scene names; 0 for the unloaded transmission error."""
     mean: float
-    """Over the pitch, in the quantity's unit, like all that follows but the phase."""
+    """Mean over the pitch, in the unit of the quantity."""
     mean_error: float
-    """Its estimated error, by the mesh and by the spacing of the positions; NaN where there is no coarse companion."""
+    """Estimated error of the mean, by the mesh and by the spacing of the positions; NaN where there is no coarse
+    companion (`output.error_bars`)."""
     peak_to_peak: float
-    """Largest less smallest value of the positions."""
+    """Largest less smallest value of the positions, in the unit of the quantity."""
     peak_to_peak_error: float
-    """Its estimated error, likewise."""
+    """Estimated error of the peak-to-peak value, by the mesh and by the spacing of the positions; NaN where there is no
+    coarse companion (`output.error_bars`)."""
     harmonic: int
-    """1 at the frequency of the mesh."""
+    """Number r of the mesh harmonic; 1 at the mesh frequency."""
     amplitude: float
-    """A of A cos(2π r φ z_1/2π + ψ)."""
+    """Amplitude A of the harmonic A cos(2π r φ z_1/2π + ψ), in the unit of the quantity."""
     amplitude_error: float
-    """Its estimated error, likewise."""
+    """Estimated error of the amplitude, by the mesh and by the spacing of the positions; NaN where there is no coarse
+    companion (`output.error_bars`)."""
     phase_deg: float
-    """ψ."""
+    """Phase ψ of the harmonic A cos(2π r φ z_1/2π + ψ)."""
 
 
 EXCITATION, HARMONICS = Table("excitation.csv", ExcitationRow), Table("harmonics.csv", HarmonicRow)
@@ -82,7 +88,7 @@ EXCITATION, HARMONICS = Table("excitation.csv", ExcitationRow), Table("harmonics
 def excitation_rows(
     excitation: MeshExcitation, radius: float, companion: CoarseExcitation = NO_COMPANION
 ) -> list[ExcitationRow]:
-    """The lightest torque first. radius: base radius of the gear with the torque [mm]."""
+    """Rows of excitation.csv, the lightest torque first. radius: base radius of the gear with the torque [mm]."""
     loaded, unloaded, rows = excitation.loaded, unloaded_curve(excitation).values, []
     for force, curves in zip(loaded.forces, pitch_curves(excitation, companion)):
         error, tangent, secant = curves[LOADED], curves[TANGENT], curves[SECANT]
@@ -101,8 +107,8 @@ def excitation_rows(
 def harmonic_rows(
     excitation: MeshExcitation, radius: float, companion: CoarseExcitation = NO_COMPANION
 ) -> list[HarmonicRow]:
-    """All quantities of excitation.csv that vary over the pitch; as many harmonics as its positions hold, at most five.
-    """
+    """Rows of harmonics.csv: all quantities of excitation.csv that vary over the pitch, each with as many harmonics as
+    its positions hold, at most five."""
     rows = list(_harmonics(NO_TORQUE, unloaded_curve(excitation)))
     for force, curves in zip(excitation.loaded.forces, pitch_curves(excitation, companion)):
         for curve in curves.values():

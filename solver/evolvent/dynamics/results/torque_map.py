@@ -16,21 +16,22 @@ class MapRow:
     """A line of torque_map.csv: a speed, run up to or down to under a torque."""
 
     torque_Nm: float
-    """On the gear that the scene names."""
+    """Torque on the gear that the scene names."""
     natural_speed_rpm: float
-    """Of the pinion, at which the mesh frequency is the natural one at the mean tangent stiffness under this torque."""
+    """Speed of the pinion at which the mesh frequency is the natural frequency at the mean tangent stiffness under this
+    torque."""
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     way: str
-    """up or down, as in response.csv."""
+    """Direction in which the pair has come to the speed: up or down, as in response.csv."""
     repeats: int
     """Mesh periods after which the motion repeats; 0 where it does not within sixteen."""
     equivalent_amplitude_um: float
-    """As in response.csv, like the next three."""
+    """√ΣA_r² of the first three mesh harmonics of s, as in response.csv."""
     elastic_equivalent_amplitude_um: float
-    """Of s − e."""
+    """√ΣA_r² of the first three mesh harmonics of s − e, as in response.csv."""
     largest_force_N: float
-    """Largest mesh force."""
+    """Largest mesh force, damping included, as in response.csv."""
     dynamic_factor: float
     """Largest mesh force over the static one under this torque."""
     separated_share: float
@@ -43,7 +44,7 @@ TORQUE_MAP = Table("torque_map.csv", MapRow)
 
 
 def map_rows(torque: float, drive: Drive, swept: SpeedSweep) -> Iterator[MapRow]:
-    """Under one torque [N·m]: up, then down, at ascending speeds."""
+    """Rows of torque_map.csv under one torque [N·m]: up, then down, at ascending speeds."""
     found = responses(drive, swept)
     for way, runs in (("up", swept.up), ("down", swept.down)):
         for period, run, each in zip(swept.periods, runs, found[way]):

@@ -23,33 +23,35 @@ class StartRow:
     """A line of transient_start.csv: a position of the first two mesh periods from rest."""
 
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     time_s: float
-    """Since the flanks touched."""
+    """Time since the flanks touched."""
     pinion_angle_deg: float
-    """Nominal rotation of the pinion since then; it begins at 0 of transient.csv."""
+    """Nominal rotation of the pinion since the flanks touched; it begins at 0 of transient.csv."""
     transmission_error_um: float
-    """r_b1 φ_1 − r_b2 φ_2."""
+    """Transmission error r_b1 φ_1 − r_b2 φ_2."""
     transmission_error_um_error: float
-    """Its estimated error by mesh, modes and time steps; NaN where there is no coarse companion (`output.error_bars`).
-    """
+    """Estimated error of the transmission error by mesh, modes and time steps; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     static_transmission_error_um: float
-    """The same without inertia."""
+    """Transmission error without inertia."""
     mesh_force_N: float
-    """Along the line of action in the transverse section."""
+    """Mesh force along the line of action in the transverse section."""
     mesh_force_N_error: float
-    """Its estimated error, likewise."""
+    """Estimated error of the mesh force by mesh, modes and time steps; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     load_N: float
-    """Of which the motion is at rest in the mean, see transient.json."""
+    """Load along the line of action, as in transient.json: the mean mesh force in a steady state."""
     max_pressure_MPa: float
     """Largest fitted peak pressure between the tip-edge zones of transient.csv; NaN where all contact lies in these, or
     nothing touches."""
     max_pressure_MPa_error: float
-    """Its estimated error, likewise."""
+    """Estimated error of the largest pressure by mesh, modes and time steps; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     static_max_pressure_MPa: float
-    """The same without inertia."""
+    """Largest fitted peak pressure without inertia, between the tip-edge zones of transient.csv."""
 
 
 TRANSIENT_START = Table("transient_start.csv", StartRow)
@@ -60,13 +62,13 @@ class StartErrors:
     """Error bars of the first mesh periods of a case, n positions; NaN where they are not known."""
 
     transmission_error_um: Floats
-    """(n,)."""
+    """(n,) errors of the transmission error [µm]."""
     mesh_force: Floats
-    """(n,) [N; N/mm in 2D]."""
+    """(n,) errors of the mesh force [N; N/mm in 2D]."""
     pressure: Floats
-    """(n,) [MPa]."""
+    """(n,) errors of the largest pressure [MPa]."""
     largest_force: float
-    """Of the largest mesh force of all time steps [N; N/mm in 2D]."""
+    """Error of the largest mesh force of all time steps [N; N/mm in 2D]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,57 +76,57 @@ class Beginning:
     """The first mesh periods of a motion, n positions over the rotation of the pinion since the start."""
 
     angle: Floats
-    """(n,) [rad]."""
+    """(n,) rotations of the pinion since the start [rad]."""
     found: MeshPeriods
-    """The motion."""
+    """Motion with its first mesh periods."""
     curves: MotionCurves
-    """Of its positions."""
+    """Curves of the positions of the first mesh periods."""
 
     @staticmethod
     def of(model: GearModel, found: MeshPeriods, inner: tuple[float, float]) -> Beginning:
-        """inner: roll distances [mm] between which pressures are looked at."""
+        """First mesh periods of a motion. inner: roll distances [mm] between which pressures are evaluated."""
         pitch, n = 2.0 * np.pi / model.pair.pinion.z, len(found.moments)
         angle = pitch / n * np.arange(1, len(found.beginning) + 1)
         return Beginning(angle, found, MotionCurves.of(model, [each.result for each in found.beginning], inner))
 
     @property
     def transmission_error(self) -> Curve:
-        """[mm]."""
+        """Transmission error [mm] over the rotation since the start."""
         return self._since(self.curves.transmission_error)
 
     @property
     def mesh_force(self) -> Curve:
-        """[N; N/mm in 2D]."""
+        """Mesh force [N; N/mm in 2D] over the rotation since the start."""
         return Curve(self.angle, np.array([moment.mesh_force for moment in self.found.beginning]))
 
     @property
     def largest_force(self) -> Curve:
-        """Of the time steps up to each position [N; N/mm in 2D]."""
+        """Largest mesh force of the time steps up to each position [N; N/mm in 2D]."""
         return Curve(self.angle, np.array([moment.steps.largest_force for moment in self.found.beginning]))
 
     @property
     def pressure(self) -> Curve:
-        """Fitted [MPa]."""
+        """Largest fitted pressure [MPa] over the rotation since the start."""
         return self._since(self.curves.fitted.positions)
 
     @property
     def hertz(self) -> Curve:
-        """Of Hertz for the line loads [MPa]."""
+        """Largest Hertzian pressure for the line loads [MPa] over the rotation since the start."""
         return self._since(self.curves.hertz.positions)
 
     @property
     def line_loads(self) -> Curve:
-        """Pressures that depend on the line loads alone [MPa]."""
+        """Largest of the pressures that depend on the line loads alone [MPa], over the rotation since the start."""
         return self._since(self.curves.line_loads.positions)
 
     def _since(self, curve: Curve) -> Curve:
-        """Over the rotation since the start, where teeth are numbered anew after each pitch."""
+        """A curve over the rotation since the start, where teeth are numbered anew after each pitch."""
         return Curve(self.angle, curve.values)
 
 
 def start_errors(own: Beginning, order: int, motions: tuple[Beginning, Beginning] | None) -> StartErrors:
-    """order: of the cells. motions: of the companion, in the time steps of the case and in shorter ones; None where
-    there are none."""
+    """Error bars of the first mesh periods. order: polynomial order of the finite elements. motions: those of the
+    companion, in the time steps of the case and in shorter ones; None where there are none."""
     if motions is None:
         nothing = np.full(len(own.angle), np.nan)
         return StartErrors(nothing, nothing, nothing, float("nan"))
@@ -140,7 +142,8 @@ def start_errors(own: Beginning, order: int, motions: tuple[Beginning, Beginning
 def beginnings(
     model: GearModel, pressures: Sequence[CasePressures], companion: MovingCompanion | None
 ) -> list[tuple[Beginning, StartErrors]]:
-    """Of all cases, numbered as they come, with their error bars; none where motions do not begin at rest."""
+    """First mesh periods of all cases, in their order, with their error bars; none where motions do not begin at
+    rest."""
     found = []
     for number, each in enumerate(pressures):
         if not each.case.found.beginning:
@@ -153,7 +156,7 @@ def beginnings(
 
 
 def _both(companion: MovingCompanion, number: int, inner: tuple[float, float]) -> tuple[Beginning, Beginning] | None:
-    """None where one of them was not found."""
+    """First mesh periods of both motions of the companion; None where one of these was not found."""
     same, finer = companion.same[number], companion.finer[number]
     if isinstance(same, str) or isinstance(finer, str):
         return None
@@ -163,7 +166,7 @@ def _both(companion: MovingCompanion, number: int, inner: tuple[float, float]) -
 def start_rows(
     model: GearModel, pressures: Sequence[CasePressures], begun: Sequence[tuple[Beginning, StartErrors]]
 ) -> Iterator[StartRow]:
-    """Of all cases, over time."""
+    """Rows of transient_start.csv: all cases, over time."""
     width = model.width_factor
     for each, (own, bars) in zip(pressures, begun):
         case, (_, calm) = each.case, each.peaks()

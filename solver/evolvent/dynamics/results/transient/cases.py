@@ -22,19 +22,19 @@ class TransientCase:
     """A speed and friction coefficient, with the statics of the same positions."""
 
     speed: float
-    """Of the pinion [r/min]."""
+    """Speed of the pinion [r/min]."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     found: MeshPeriods
-    """The transient."""
+    """Transient motion: its last mesh period, and what led to it."""
     static: tuple[PositionResult, ...]
-    """Its positions without inertia."""
+    """Static results at the positions of the last mesh period."""
     load: float
-    """Along the line of action [N; N/mm in 2D]."""
+    """Load along the line of action [N; N/mm in 2D]."""
 
     @property
     def name(self) -> str:
-        """Speed and friction, for messages."""
+        """Speed and friction coefficient, as messages state them."""
         return f"{self.speed:g} r/min, μ = {self.friction:g}"
 
     @property
@@ -54,11 +54,11 @@ class CasePressures:
     """Fitted pressures of a case; NaN where nothing is known."""
 
     case: TransientCase
-    """The case."""
+    """Speed and friction coefficient, with the motion."""
     moving: PitchPressure
-    """Of its positions."""
+    """Fitted pressures of the last mesh period, with inertia."""
     still: PitchPressure
-    """Without inertia."""
+    """Fitted pressures of the same positions without inertia."""
 
     def peaks(self) -> tuple[Floats, Floats]:
         """Largest pressure at each position (n,), with inertia and without [MPa]."""
@@ -66,15 +66,15 @@ class CasePressures:
 
 
 def elements_across(model: GearModel, pressures: Sequence[CasePressures]) -> float:
-    """Across the fitted contact width, median of all slices of all cases; NaN where nothing touches."""
+    """Elements across the fitted contact width, median of all slices of all cases; NaN where nothing touches."""
     pinion = model.bodies[0]
     half_widths = np.concatenate([cut.half_width for each in pressures for cut in each.moving.cuts])
     return cells_across(half_widths, pinion.z, pinion.roll_length, pinion.gear.base_radius, pinion.mesh.order)
 
 
 def case_pressures(model: GearModel, cases: Sequence[TransientCase]) -> list[CasePressures]:
-    """Of all cases, between the same tip-edge zones: of all positions that are reported, those from rest too, as tip
-    edges bear further in under several times the load."""
+    """Fitted pressures of all cases, between common tip-edge zones. These are of all positions that are reported, also
+    of those from rest, as tip edges bear further in under several times the load."""
     still = {case.friction: case.static for case in cases}  # the same at all speeds
     begun = [period for case in cases for period in case.first_periods]
     columns = [*(case.results for case in cases), *still.values(), *begun]

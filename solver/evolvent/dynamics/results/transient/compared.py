@@ -1,4 +1,4 @@
-"""A curve of a case beside the same curve of both motions of its companion: what it is off by."""
+"""Errors of a curve of a case, from the same curve of both motions of its companion."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from evolvent.results.error_bars.compared import Compared, Curve, Reduction, rel
 from evolvent_meshes.arrays import Floats
 
 FINER = 4
-"""Time steps of the companion to one of the case: a power of two."""
+"""Time steps of the companion in one time step of the case: a power of two."""
 STEP_FACTOR = FINER / (FINER - 1.0)
-"""Error over the difference to steps of a quarter: first order."""
+"""Error of the time steps over the difference to steps of a quarter: first order."""
 
 
 @dataclass(frozen=True, eq=False)
 class ComparedMotion:
-    """A curve over the rotation of the pinion or of a tooth."""
+    """A curve over the rotation of the pinion or of a tooth, of a case and of both motions of its companion."""
 
     factor: float
-    """Error by the mesh over the difference of the first two."""
+    """Error by the mesh over the difference between case and companion in the same time steps."""
     own: Curve
-    """Of the case (n,)."""
+    """Curve of the case (n,)."""
     same: Curve
-    """On elements of twice the size in the same time steps."""
+    """Curve on elements of twice the size, in the same time steps."""
     finer: Curve
-    """There in shorter ones."""
+    """Curve on elements of twice the size, in shorter time steps."""
 
     def of_each(self) -> Floats:
         """Errors (n,) of the case's values. Where the companion has none, its steps count with the case's sizes."""
@@ -44,10 +44,10 @@ class ComparedMotion:
 
     @property
     def _mesh(self) -> Compared:
-        """What the mesh and the modes change."""
+        """Comparison for the error by the mesh and the modes."""
         return Compared(self.own, self.same, self.factor)
 
     @property
     def _steps(self) -> Compared:
-        """What the length of the time steps changes."""
+        """Comparison for the error by the length of the time steps."""
         return Compared(self.same, self.finer, STEP_FACTOR)

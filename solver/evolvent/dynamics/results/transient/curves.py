@@ -22,23 +22,23 @@ class PressureCurves:
     """Largest pressures [MPa] of a mesh period; NaN where none is known."""
 
     positions: Curve
-    """At its n positions."""
+    """Largest pressures at the n positions of the mesh period."""
     teeth: Curve
-    """Of a tooth pair over its engagement."""
+    """Largest pressures of a tooth pair over its engagement."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionCurves:
-    """A mesh period of one motion, or of statics."""
+    """Curves of a mesh period of one motion, or of statics."""
 
     model: GearModel
     """The pair on one kind of meshes."""
     results: tuple[PositionResult, ...]
     """(n,) positions, at ascending rotations from 0 on."""
     cuts: tuple[Slices, ...]
-    """(n,) their contact in slices."""
+    """(n,) contact of each position in slices."""
     inner: tuple[float, float]
-    """Roll distances [mm] between which pressures are looked at."""
+    """Roll distances [mm] between which pressures are evaluated."""
 
     @staticmethod
     def of(model: GearModel, results: Sequence[PositionResult], inner: tuple[float, float]) -> MotionCurves:
@@ -55,12 +55,12 @@ class MotionCurves:
 
     @property
     def transmission_error(self) -> Curve:
-        """[mm]."""
+        """Transmission error [mm] over the rotation of the pinion."""
         return Curve(self.angle, np.array([result.transmission_error for result in self.results]))
 
     @property
     def tooth_force(self) -> Curve:
-        """Of a tooth pair over its engagement [N; N/mm in 2D]."""
+        """Normal force of a tooth pair over its engagement [N; N/mm in 2D]."""
 
         def force(k: int, tooth: int) -> float:
             contact = self.results[k].contact
@@ -70,17 +70,17 @@ class MotionCurves:
 
     @property
     def fitted(self) -> PressureCurves:
-        """The pressures that tables have."""
+        """Fitted pressures, as in the tables."""
         return self._pressures(self.cuts)
 
     @property
     def hertz(self) -> PressureCurves:
-        """Those of Hertz for the line loads."""
+        """Hertzian pressures for the line loads."""
         return self._pressures([cut.of_hertz() for cut in self.cuts])
 
     @property
     def line_loads(self) -> PressureCurves:
-        """Those that depend on the line loads alone."""
+        """Pressures that depend on the line loads alone."""
         return self._pressures([cut.of_line_loads(self.model.pair) for cut in self.cuts])
 
     def _pressures(self, cuts: Sequence[Slices]) -> PressureCurves:
@@ -90,7 +90,7 @@ class MotionCurves:
         return PressureCurves(Curve(self.angle, peaks), teeth)
 
     def _over_engagement(self, value: Callable[[int, int], float]) -> Curve:
-        """value: of a position and a tooth pair in contact there."""
+        """Curve of a tooth pair over its engagement. value: of a position and a tooth pair in contact there."""
         pitch = 2.0 * np.pi / self.model.pair.pinion.z
         rows = [
             (result.stand.angle + tooth * pitch, value(k, tooth))
@@ -102,12 +102,12 @@ class MotionCurves:
 
 
 def mesh_force(found: MeshPeriods) -> Curve:
-    """Of the last mesh period [N; N/mm in 2D]."""
+    """Mesh force over the last mesh period [N; N/mm in 2D]."""
     angle = np.array([moment.result.stand.angle for moment in found.moments])
     return Curve(angle, np.array([moment.mesh_force for moment in found.moments]))
 
 
 def largest(values: Floats) -> float:
-    """Of the values (n,) that are known; NaN where none is."""
+    """Largest of the values (n,) that are known; NaN where none is."""
     known = values[np.isfinite(values)]
     return float(known.max()) if len(known) else float("nan")

@@ -43,18 +43,18 @@ SAME_STEPS, FINER_STEPS = "on elements of twice the size", "on elements of twice
 
 @dataclass(frozen=True, eq=False)
 class MovingCompanion:
-    """The cases of a scene on elements of twice the size."""
+    """Motions of the cases of a scene on elements of twice the size."""
 
     model: GearModel
-    """The pair."""
+    """Gear pair with elements of twice the size."""
     order: int
-    """Of the cells."""
+    """Polynomial order of the finite elements."""
     static: Sequence[tuple[PositionResult, ...]]
-    """Of each friction coefficient, its positions without inertia."""
+    """Static results at all positions, for each friction coefficient."""
     same: Mapping[int, MeshPeriods | str]
     """Number of a case -> its motion in the time steps of the scene, or why there is none."""
     finer: Mapping[int, MeshPeriods | str]
-    """The same in steps of a quarter."""
+    """Number of a case -> its motion in steps of a quarter of those, or why there is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,26 +62,26 @@ class CaseErrors:
     """Error bars of a case with n positions and m tooth pairs in transient_teeth.csv; NaN where they are not known."""
 
     transmission_error_um: Floats
-    """(n,)."""
+    """(n,) errors of the transmission error [µm]."""
     mesh_force: Floats
-    """(n,) [N; N/mm in 2D]."""
+    """(n,) errors of the mesh force [N; N/mm in 2D]."""
     pressure: Floats
-    """(n,) [MPa]."""
+    """(n,) errors of the largest pressure at each position [MPa]."""
     tooth_force: dict[float, float] = field(default_factory=dict)
-    """Rotation of a tooth pair, see `by_rotation` -> [N; N/mm in 2D]."""
+    """Rotation of a tooth pair (`by_rotation`) -> error of its normal force [N; N/mm in 2D]."""
     tooth_pressure: dict[float, float] = field(default_factory=dict)
-    """The same [MPa]."""
+    """Rotation of a tooth pair (`by_rotation`) -> error of its largest pressure [MPa]."""
     peak_to_peak_um: float = float("nan")
     static_peak_to_peak_um: float = float("nan")
     dynamic_factor: float = float("nan")
     max_pressure: float = float("nan")
-    """[MPa]."""
+    """Error of the largest pressure [MPa]."""
     static_max_pressure: float = float("nan")
-    """[MPa]."""
+    """Error of the largest static pressure [MPa]."""
     natural_frequency: float = float("nan")
-    """Relative."""
+    """Relative error of the natural frequency."""
     said: str = ""
-    """Why they are not known; empty where they are, or were not asked for."""
+    """Sentence on why error bars are not known; empty where they are, or were not asked for."""
 
     def of_tooth(self, angle: float) -> tuple[float, float]:
         """Errors of force [N; N/mm in 2D] and pressure [MPa] at a rotation of a tooth pair [rad]."""
@@ -92,7 +92,7 @@ class CaseErrors:
 def case_errors(
     own: GearModel, pressures: Sequence[CasePressures], companion: MovingCompanion | None
 ) -> list[CaseErrors]:
-    """Of all cases, numbered as they come; unknown without a companion."""
+    """Error bars of all cases, in their order; unknown without a companion."""
     frictions = list(dict.fromkeys(each.case.friction for each in pressures))
     found = []
     for number, each in enumerate(pressures):
@@ -119,7 +119,8 @@ def _errors(
     own: GearModel, pressures: CasePressures, companion: MovingCompanion, motions: tuple[MeshPeriods, MeshPeriods],
     still: Sequence[PositionResult],
 ) -> CaseErrors:
-    """still: the companion's statics."""
+    """Error bars of one case. motions: of the companion, in the time steps of the case and in a quarter of them; still:
+    the companion's statics."""
     case, order, inner = pressures.case, companion.order, pressures.moving.inner_path
     factor = SHARING[order]
     moving, static = (
@@ -152,7 +153,7 @@ def _errors(
 
 
 def _pitch_curve(quantity: str, unit: float, static: MotionCurves, calm: MotionCurves, order: int) -> PitchCurve:
-    """Of statics, with its error bars. calm: of the companion."""
+    """Static curve over the pitch, with its error bars. calm: statics of the companion."""
     own, coarse = (
         unit * np.array([result.transmission_error if quantity == LOADED else result.stiffness for result in each])
         for each in (static.results, calm.results)
@@ -161,25 +162,25 @@ def _pitch_curve(quantity: str, unit: float, static: MotionCurves, calm: MotionC
 
 
 def _natural_frequency_error(static: MotionCurves, calm: MotionCurves, order: int) -> float:
-    """Relative: half that of the mean stiffness."""
+    """Relative error of the natural frequency: half that of the mean stiffness."""
     curve = _pitch_curve(TANGENT, 1.0, static, calm, order)
     return float(0.5 * curve.mean_error / np.mean(curve.values))
 
 
 def _static_pressure_error(static: MotionCurves, calm: MotionCurves, factor: float) -> float:
-    """Of the largest one, by the mesh and by the spacing of positions."""
+    """Error of the largest static pressure, by the mesh and by the spacing of positions."""
     loads = Compared(static.line_loads.positions, calm.line_loads.positions, factor)
     return _fitted_error(static) + loads.of_figure(largest) + _spacing_error(static)
 
 
 def _fitted_error(curves: MotionCurves) -> float:
-    """Of the largest fitted pressure for the computed loads."""
+    """Error of the largest fitted pressure for the computed loads."""
     return Compared(curves.fitted.positions, curves.hertz.positions).of_figure(largest)
 
 
 def _spacing_error(curves: MotionCurves) -> float:
-    """Of the largest pressure by the spacing of positions: what every other one misses, and what may lie between
-    two."""
+    """Error of the largest pressure by the spacing of positions: the larger of what every other position misses, and
+    what may lie between two."""
     values, teeth = curves.fitted.positions.values, curves.fitted.teeth
     top = largest(values)
     missed = np.mean([top - largest(values[every_other(len(values), first)]) for first in (0, 1)])

@@ -25,93 +25,104 @@ class TransientFacts:
     """An entry of transient.json: a speed and friction coefficient."""
 
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     mesh_frequency_Hz: float
-    """Speed times number of teeth."""
+    """Mesh frequency: speed times number of teeth of the pinion."""
     mesh_periods: int
-    """That were computed."""
+    """Number of mesh periods that were computed."""
     last_change: float | None
-    """Of the transmission error from the last but one to the last, over its peak-to-peak value; null for one period."""
+    """Change of the transmission error from the last but one mesh period to the last, over its peak-to-peak value; null
+    for one period."""
     steady: bool
-    """Whether that is at most transient.steady_change."""
+    """Whether the motion is steady: last_change is at most transient.steady_change."""
     modes: int
-    """Natural modes of both gears together."""
+    """Number of natural modes of both gears together."""
     lowest_mode_Hz: float | None
-    """The lowest of them; null without modes."""
+    """Lowest natural frequency of the modes of both gears; null without modes."""
     natural_frequency_Hz: float
-    """Of the rotation of the gears on their mesh, by its mean tangent stiffness in statics, with the modes of both
-    bodies: of that natural mode of the pair which carries most of the transmission error under a change of the mesh
-    force."""
+    """Natural frequency of the rotation of the gears on their mesh, by its mean tangent stiffness in statics, with the
+    modes of both bodies: that of the natural mode of the pair which carries most of the transmission error under a
+    change of the mesh force."""
     natural_frequency_Hz_error: float
-    """Its estimated error by the mesh and the spacing of positions; null where there is no coarse companion
-    (`output.error_bars`)."""
+    """Estimated error of the natural frequency by the mesh and the spacing of positions; null where there is no coarse
+    companion (`output.error_bars`)."""
     steps_per_natural_period: float
-    """Time steps in a period of it, in the mean; of fewer than twenty, all equal, what the mesh excites of it is not
-    resolved."""
+    """Mean number of time steps in a period of natural_frequency_Hz; with fewer than twenty equal ones the vibration
+    that the mesh excites at it is not resolved."""
     time_steps: int
-    """In the last mesh period."""
+    """Number of time steps in the last mesh period."""
     shortest_step_s: float
-    """The shortest of them; of a start from rest also of its first two mesh periods."""
+    """Shortest time step of the last mesh period; of a start from rest also of its first two mesh periods."""
     rejected_steps: int
-    """That were taken again in half, in the last mesh period; none without transient.tolerance."""
+    """Number of time steps of the last mesh period that were rejected and taken again in half; none without
+    transient.tolerance."""
     step_error: float
-    """The largest estimated error of the speeds in one of its time steps, as transient.tolerance bounds it; of a start
-    from rest also of its first two mesh periods."""
+    """Largest estimated error of the speeds in a time step of the last mesh period, as transient.tolerance bounds it;
+    of a start from rest also of its first two mesh periods."""
     mean_force_N: float
-    """Of the mesh, over the last period."""
+    """Mean mesh force over the last mesh period."""
     load_N: float
-    """The load along the line of action: the same in a steady state. Where both gears are free, T_1/r_b1 and T_2/r_b2,
-    which friction makes differ, weighed by I_2 r_b1² and I_1 r_b2²."""
+    """Load along the line of action, to which mean_force_N is equal in a steady state. Where both gears are free,
+    T_1/r_b1 and T_2/r_b2, which friction makes differ, weighed by I_2 r_b1² and I_1 r_b2²."""
     peak_to_peak_um: float
-    """Of the transmission error."""
+    """Peak-to-peak transmission error in the last mesh period."""
     peak_to_peak_um_error: float
-    """Its estimated error by mesh, modes and time steps; null where there is no coarse companion (`output.error_bars`).
-    """
+    """Estimated error of the peak-to-peak transmission error by mesh, modes and time steps; null where there is no
+    coarse companion (`output.error_bars`)."""
     static_peak_to_peak_um: float
-    """The same without inertia."""
+    """Peak-to-peak transmission error without inertia."""
     static_peak_to_peak_um_error: float
-    """Its estimated error by the mesh and the spacing of positions; null likewise."""
+    """Estimated error of the peak-to-peak transmission error without inertia, by the mesh and the spacing of positions;
+    null where there is no coarse companion (`output.error_bars`)."""
     dynamic_factor: float
     """Largest mesh force over the load, at the ends of all time steps of the last mesh period; not K_v of ISO 6336-1.
     """
     dynamic_factor_error: float
-    """Its estimated error by mesh, modes and time steps; null likewise."""
+    """Estimated error of the dynamic factor by mesh, modes and time steps; null where there is no coarse companion
+    (`output.error_bars`)."""
     start_dynamic_factor: float | None
-    """The same of the first two mesh periods from rest; null for a motion that begins with statics."""
+    """Largest mesh force over the load in the first two mesh periods from rest; null for a motion that begins with
+    statics."""
     start_dynamic_factor_error: float | None
-    """Its estimated error by mesh, modes and time steps; null likewise."""
+    """Estimated error of start_dynamic_factor by mesh, modes and time steps; null where there is no coarse companion
+    (`output.error_bars`), and for a motion that begins with statics."""
     separated: float
-    """Share of the positions at which nothing touches."""
+    """Share of the positions of the last mesh period at which nothing touches."""
     max_pressure_MPa: float
-    """Largest of transient.csv; null where none is known."""
+    """Largest pressure of transient.csv, with inertia; null where none is known."""
     max_pressure_MPa_error: float
-    """Its estimated error by mesh, modes, time steps and the spacing of positions; null likewise."""
+    """Estimated error of the largest pressure by mesh, modes, time steps and the spacing of positions; null where there
+    is no coarse companion (`output.error_bars`)."""
     static_max_pressure_MPa: float
-    """The same without inertia."""
+    """Largest pressure of transient.csv without inertia; null where none is known."""
     static_max_pressure_MPa_error: float
-    """Its estimated error by the mesh and the spacing of positions; null likewise."""
+    """Estimated error of the largest pressure without inertia, by the mesh and the spacing of positions; null where
+    there is no coarse companion (`output.error_bars`)."""
     momentum_error: float
     """Largest residual of the equations of motion at any time step, over the forces in them."""
     reaction_error: float
-    """Largest sum of the contact forces on both gears, which are opposite, over the force; moments about the axes less
-    torques, likewise."""
+    """Largest sum of the contact forces on both gears, which are opposite, over the force; likewise their moments about
+    the axes less the torques."""
     moment_error: float
-    """The same of their moments about one axis; flanks a gap apart have some."""
+    """Largest sum of the moments of the contact forces on both gears about one axis, over the force and the base
+    radius; flanks a gap apart have some."""
     motion_energy_error: float
     """Largest error of the energy balance of vibration and modes in a time step, over this energy and the work."""
     step_energy_error: float
     """Largest energy between rotation, contact and motion that is left without account from one position to the next,
     over what the load passes on there."""
     period_energy_error: float
-    """The same over the last mesh period."""
+    """Energy between rotation, contact and motion that is left without account over the last mesh period, over what the
+    load passes on."""
     friction_loss: float
     """Energy lost to friction in the last mesh period, over what the load passes on."""
     damping_loss: float
-    """Lost to the damping of mesh and modes, likewise."""
+    """Energy lost to the damping of mesh and modes in the last mesh period, over what the load passes on."""
     numerical_loss: float
-    """Taken out by the time scheme, likewise; beside damping_loss it says how much of the damping is numerical."""
+    """Energy taken out by the time scheme in the last mesh period, over what the load passes on; beside damping_loss it
+    says how much of the damping is numerical."""
 
 
 TRANSIENT_FACTS = Table("transient.json", TransientFacts)
@@ -121,8 +132,8 @@ def transient_facts(
     model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors], starts: Sequence[StartErrors],
     frequencies: Floats, naturals: Sequence[float],
 ) -> list[TransientFacts]:
-    """Of all cases with their error bars. starts: error bars of motions from rest, empty without. frequencies: of the
-    modes [rad/s]; naturals: of each case, see `natural_frequency_Hz`."""
+    """Figures of all cases with their error bars. starts: error bars of motions from rest, empty without. frequencies:
+    of the modes [rad/s]; naturals: natural frequency of each case (`natural_frequency_Hz`)."""
     width, facts = model.width_factor, []
     lowest = float(frequencies.min() / (2.0 * np.pi)) if len(frequencies) else None
     for each, bars, natural, start in zip_longest(pressures, errors, naturals, starts):
@@ -162,8 +173,8 @@ def transient_facts(
 def sentences(
     facts: Sequence[TransientFacts], positions: int, tolerance: float | None, radius: float
 ) -> list[str]:
-    """On motions that are not steady, and on speeds at which time steps are too long. positions: of a mesh period;
-    tolerance: of the estimated error of a step, None for equal steps. radius: transient.spectral_radius."""
+    """Sentences on motions that are not steady, and on speeds at which time steps are too long. positions: of a mesh
+    period; tolerance: of the estimated error of a step, None for equal steps. radius: transient.spectral_radius."""
     jitter = "" if tolerance is None else "lower transient.tolerance, as changes of the time step add jitter; else "
     unsteady = [
         f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: not steady after {fact.mesh_periods} mesh periods; "
@@ -184,14 +195,15 @@ def sentences(
 
 
 def _coarse(fact: TransientFacts, positions: int, tolerance: float) -> str:
-    """That divided steps, or else the positions that the tables have, are too far apart; empty where they are not."""
+    """Sentence where divided time steps, or else the positions of the tables, are too far apart; empty where they are
+    not."""
     speed, natural = fact.speed_rpm, fact.natural_frequency_Hz
     seen = positions * fact.mesh_frequency_Hz / natural
     return unresolved_within(speed, natural, fact.steps_per_natural_period, tolerance) or unseen(speed, natural, seen)
 
 
 def _beyond(fact: TransientFacts, tolerance: float) -> str:
-    """That the shortest step is too long for the tolerance."""
+    """Sentence on a shortest time step that is too long for the tolerance."""
     return (
         f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: wanted an error of a time step of at most "
         f"transient.tolerance = {tolerance:g}, found {fact.step_error:.2g} with the shortest one of "
@@ -201,7 +213,7 @@ def _beyond(fact: TransientFacts, tolerance: float) -> str:
 
 
 def _doubt(fact: TransientFacts) -> str:
-    """Of error bars from time steps that do not resolve the vibration either."""
+    """Clause on error bars from time steps that do not resolve the vibration either; empty where they do."""
     if math.isnan(fact.dynamic_factor_error) or FINER * fact.steps_per_natural_period >= SEEN_STEPS:
         return ""
     return "; error bars may not hold, as the shorter steps from which they come do not resolve it either"

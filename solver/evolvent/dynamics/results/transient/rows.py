@@ -20,38 +20,40 @@ class TransientRow:
     """A line of transient.csv: a position of the last mesh period that was computed."""
 
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     pinion_angle_deg: float
     """Nominal rotation of the pinion; 0: tooth pair 0 touches at the pitch point, in the mid-face section."""
     time_s: float
-    """Since the pinion stood at rotation 0, within this mesh period."""
+    """Time since the pinion stood at rotation 0, within this mesh period."""
     transmission_error_um: float
-    """r_b1 φ_1 − r_b2 φ_2."""
+    """Transmission error r_b1 φ_1 − r_b2 φ_2."""
     transmission_error_um_error: float
-    """Its estimated error by mesh, modes and time steps; NaN where there is no coarse companion (`output.error_bars`).
-    """
+    """Estimated error of the transmission error by mesh, modes and time steps; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     static_transmission_error_um: float
-    """The same without inertia."""
+    """Transmission error without inertia."""
     velocity_mm_per_s: float
     """Rate of the transmission error."""
     mesh_force_N: float
-    """Along the line of action in the transverse section; the torque over the base radius in statics."""
+    """Mesh force along the line of action in the transverse section; in statics the torque over the base radius."""
     mesh_force_N_error: float
-    """Its estimated error, likewise."""
+    """Estimated error of the mesh force by mesh, modes and time steps; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     pinion_torque_Nm: float
     """Moment of the contact forces about the pinion's axis."""
     wheel_torque_Nm: float
-    """About the wheel's axis."""
+    """Moment of the contact forces about the wheel's axis."""
     max_pressure_MPa: float
     """Largest fitted peak pressure between the tip-edge zones, which all cases have in common: of their last mesh
     periods, of statics and, from rest, of their first mesh periods. NaN where all contact lies in these, or nothing
     touches."""
     max_pressure_MPa_error: float
-    """Its estimated error, likewise."""
+    """Estimated error of the largest pressure by mesh, modes and time steps; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     static_max_pressure_MPa: float
-    """The same without inertia."""
+    """Largest fitted peak pressure without inertia, between the tip-edge zones."""
 
 
 @dataclass(frozen=True)
@@ -59,24 +61,25 @@ class TransientToothRow:
     """A line of transient_teeth.csv: a tooth pair at a position of the last mesh period."""
 
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     tooth_angle_deg: float
     """Rotation of the pinion since this tooth pair touched at the pitch point, in the mid-face section."""
     normal_force_N: float
-    """Of this tooth pair."""
+    """Normal force of the tooth pair."""
     normal_force_N_error: float
-    """Its estimated error by mesh, modes and time steps; NaN where there is no coarse companion (`output.error_bars`).
-    """
+    """Estimated error of the normal force by mesh, modes and time steps; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     static_normal_force_N: float
-    """The same without inertia."""
+    """Normal force of the tooth pair without inertia."""
     max_pressure_MPa: float
-    """Largest fitted peak pressure between the tip-edge zones of transient.csv."""
+    """Largest fitted peak pressure of the tooth pair, between the tip-edge zones of transient.csv."""
     max_pressure_MPa_error: float
-    """Its estimated error, likewise."""
+    """Estimated error of the largest pressure by mesh, modes and time steps; NaN where there is no coarse companion
+    (`output.error_bars`)."""
     static_max_pressure_MPa: float
-    """The same without inertia."""
+    """Largest fitted peak pressure of the tooth pair without inertia, between the tip-edge zones of transient.csv."""
 
 
 TRANSIENT, TRANSIENT_TEETH = Table("transient.csv", TransientRow), Table("transient_teeth.csv", TransientToothRow)
@@ -85,7 +88,7 @@ TRANSIENT, TRANSIENT_TEETH = Table("transient.csv", TransientRow), Table("transi
 def transient_rows(
     model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors]
 ) -> Iterator[TransientRow]:
-    """Of all cases with their error bars, at ascending rotations."""
+    """Rows of transient.csv: all cases with their error bars, at ascending rotations."""
     width = model.width_factor
     for each, bars in zip(pressures, errors):
         case = each.case
@@ -106,8 +109,8 @@ def transient_rows(
 def tooth_rows(
     model: GearModel, pressures: Sequence[CasePressures], errors: Sequence[CaseErrors]
 ) -> Iterator[TransientToothRow]:
-    """Of all cases with their error bars, at ascending rotations of a tooth: all pairs of a pitch make one engagement.
-    """
+    """Rows of transient_teeth.csv: all cases with their error bars, at ascending rotations of a tooth. All tooth pairs
+    of a pitch make one engagement."""
     pitch, width = 2.0 * np.pi / model.pair.pinion.z, model.width_factor
     for each, bars in zip(pressures, errors):
         case, rows = each.case, []

@@ -56,7 +56,7 @@ def overview(scene: Scene) -> str:
 
 
 def _skip_lines(scene: Scene) -> str:
-    """What the run leaves out, and what it computes the long way."""
+    """Lines on the parts of the run that are skipped, and on those that are computed in full."""
     left_out = skipped(scene)
     column = 2 + max((len(skip.name) for skip in left_out), default=0)
     lines = ["Skipped", *(f"  {skip.name:<{column}}{skip.sentence}" for skip in left_out)]

@@ -37,12 +37,12 @@ def levels_megabytes(sectors: Sequence[LevelledSector], ranks: int) -> float:
 
 
 def _compliance_megabytes(size: LevelledSize) -> float:
-    """Of a coarse sector's flank."""
+    """Memory [MB] of the compliance of a coarse sector's flank."""
     return 8e-6 * size.sector.flank**2
 
 
 def _patch_megabytes(sector: LevelledSector, member: Member) -> float:
-    """Of the largest patch of a gear."""
+    """Memory [MB] of the largest patch of a gear."""
     last = len(sector.levels) - 1
     return max(
         PATCH_PER_NODE[member is Member.PINION and number == last] * nodes
@@ -51,7 +51,7 @@ def _patch_megabytes(sector: LevelledSector, member: Member) -> float:
 
 
 def _patch_nodes(sector: LevelledSector) -> list[int]:
-    """Nodes of the flank of each level's largest patch."""
+    """Number of flank nodes of the largest patch of each level."""
     rows, layers, found = sector.coarse.profile_elements, sector.coarse.face_elements, []
     for level in sector.levels:
         here = rows if rows <= WHOLE_PROFILE else PATCH_ROWS

@@ -1,4 +1,4 @@
-"""What `evolvent check` tells of the sections that commands beyond `evolvent run` read: [dynamics], [transient] and
+"""Tables of `evolvent check` on the sections that commands beyond `evolvent run` read: [dynamics], [transient] and
 [fatigue]. Each table stands where the scene has its section."""
 
 from __future__ import annotations

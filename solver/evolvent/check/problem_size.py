@@ -87,7 +87,7 @@ def _with_roots(problem: GearProblem, member: Member, times: int) -> SectorSize:
 
 
 def _condensing_megabytes(scene: Scene, ranks: int, sizes: tuple[SectorSize, SectorSize]) -> float:
-    """Of a scene whose bodies have these sizes. One rank holds one gear's elimination beside the other gear's
+    """Memory [MB] of condensing bodies of these sizes. One rank holds one gear's elimination beside the other gear's
     compliance, several ranks both eliminations at once."""
     problem, (pinion, _) = gear_problem(scene), sizes
     dimension = 2 if problem.is_plane else 3

@@ -51,11 +51,11 @@ class SolvedPosition:
     width."""
 
     result: PositionResult
-    """The solution."""
+    """Contact solution of the position."""
     cut: Slices
-    """Its contact in slices."""
+    """Contact in slices across the face width."""
     teeth: tuple[ToothSummary, ...]
-    """Its tooth pairs in contact, ascending."""
+    """Results of the tooth pairs in contact, in ascending order of their index."""
 
 
 @dataclass(frozen=True)

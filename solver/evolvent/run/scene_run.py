@@ -41,7 +41,7 @@ from evolvent.scene.skips import one_mesh_reason, skipped, switched_off, wanted_
 from evolvent.scene.vibration_limits import doubtful
 
 NOTHING_LEFT = "complete: nothing to compute, tables and pictures are written again"
-"""What is said of a resumed run that was finished."""
+"""Message of a resumed run that was complete."""
 
 
 def run_scene(

@@ -31,7 +31,7 @@ from evolvent_meshes.gears.member import Member
 
 @dataclass(frozen=True)
 class ResumePoint:
-    """What an earlier run has completed."""
+    """Positions that an earlier run has completed, and the state of its sweep."""
 
     positions: tuple[SweptPosition, ...]
     """The completed positions in the order of their solution."""
@@ -45,7 +45,8 @@ class ResumePoint:
 
 
 def resume_point(scene: Scene, archive: Archive, resume: bool) -> ResumePoint | None:
-    """Where to continue, None for the beginning. Raises ArchiveError where the results belong to another scene."""
+    """Where the run continues; None where it begins anew. Raises ArchiveError where the results belong to another
+    scene."""
     pair = scene.gear_pair()
     state = archive.read_state(pair) if resume else None
     if state is None:
@@ -123,7 +124,7 @@ def with_bodies(
 
 
 def elastic_point(scene: Scene, comm: MPI.Comm) -> OperatingPoint | None:
-    """As `operating_point`, with the scene's gear bodies. Collective."""
+    """Operating point of the scene, with its gear bodies as they are declared. Collective."""
     point, section = operating_point(scene), scene.dynamics
     if point is None or section is None:
         return None

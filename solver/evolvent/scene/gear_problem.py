@@ -24,7 +24,7 @@ def gear_problem(scene: Scene) -> GearProblem:
 
 
 def gear_options(scene: Scene) -> GearOptions:
-    """What the scene wants computed in full: what skip.off names."""
+    """Options for parts that the scene wants computed in full, as skip.off names them."""
     off = set(scene.skip.off)
     return GearOptions(
         in_space="plane" in off,

@@ -19,9 +19,9 @@ class FileKind:
     """A kind of TOML file, for messages."""
 
     name: str
-    """What the file is."""
+    """Name of the kind of file."""
     example: str
-    """A sentence that names an example."""
+    """Sentence that names an example."""
 
 
 SCENE = FileKind("scene file", "demos/yang2022.toml is a complete example")

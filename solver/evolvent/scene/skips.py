@@ -29,11 +29,11 @@ class Skip:
     """A part of the computation that may be left out."""
 
     name: SkipName
-    """As in docs/scene.md."""
+    """Name of the skip, as in docs/scene.md."""
     applies: Callable[[Scene], bool]
-    """Whether a scene can do without."""
+    """Whether a scene allows the skip."""
     sentence: Callable[[Scene], str]
-    """What is left out, for `check`, the log and summary.json."""
+    """Sentence on the part that is left out, for `check`, the log and summary.json."""
     tolerance: float
     """Largest difference from the result without the skip: of transmission error, peak pressure, torques and lost share
     of the input power, each over its largest value in the pitch."""
@@ -44,9 +44,9 @@ class Skipped:
     """A skip that was made, as in summary.json."""
 
     name: SkipName
-    """As in docs/scene.md."""
+    """Name of the skip, as in docs/scene.md."""
     sentence: str
-    """What is left out, in this scene."""
+    """Sentence on the part that is left out, with values of this scene."""
 
 
 def _always(_: Scene) -> bool:
@@ -201,7 +201,7 @@ OF_OUTPUT: tuple[SkipName, ...] = ("error-bars", "fields", "pictures")
 
 
 def skip_named(name: SkipName) -> Skip:
-    """The registry's entry."""
+    """The skip of this name."""
     return next(skip for skip in SKIPS if skip.name == name)
 
 
@@ -230,7 +230,7 @@ def with_deflected_flanks(scene: Scene) -> Scene:
 
 
 def wanted_output(scene: Scene) -> OutputSection:
-    """What is written beside the tables."""
+    """Section [output] with all that skip.off adds: pictures, animation, fields and error bars."""
     off = scene.skip.off
     asked = scene.output
     drawn = "pictures" in off

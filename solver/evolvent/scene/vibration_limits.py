@@ -32,18 +32,18 @@ SOFT = 0.05
 
 @dataclass(frozen=True)
 class PlannedVibration:
-    """What limits depend on."""
+    """Quantities of a scene on which limits of its vibration depend."""
 
     pair: GearPair
-    """Both gears."""
+    """Geometry of the gear pair."""
     force: float
-    """Static, along the line of action in the transverse section [N]."""
+    """Static force along the line of action in the transverse section [N]."""
     moduli: tuple[float, float]
-    """Of both gears [MPa]."""
+    """Young's moduli of both gears [MPa]."""
     dynamics: DynamicsSection | None
-    """The section of the scene, None where it has none."""
+    """Section [dynamics] of the scene, None where it has none."""
     transient: TransientSection | None
-    """Likewise."""
+    """Section [transient] of the scene, None where it has none."""
 
     @property
     def fastest(self) -> float:
@@ -54,13 +54,14 @@ class PlannedVibration:
 
     @cached_property
     def mesh_stiffness(self) -> float:
-        """c_γα of ISO 6336-1 times the face width [N/mm]."""
+        """Mesh stiffness: c_γα of ISO 6336-1 times the face width [N/mm]."""
         iso = method_b(self.pair, 1.0, self.force, Accuracy(), self.moduli)
         return 1e3 * iso.mesh_stiffness * self.pair.face_width
 
     @cached_property
     def natural_speed(self) -> float:
-        """Of the pinion [r/min], by that stiffness and what gives way in series."""
+        """Speed of the pinion [r/min] at which the mesh frequency is the natural frequency, by `mesh_stiffness` and the
+        stiffness in series."""
         section = self.dynamics or DynamicsSection()
         mass, flexible = equivalent_mass(self.pair, moments_of_inertia(self.pair, section)), 1.0 / self.mesh_stiffness
         if section.series_stiffness_N_per_um is not None:

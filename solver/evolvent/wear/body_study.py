@@ -35,8 +35,8 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 EDGE_SHARE = 0.25
-"""Of the shortest cell edge at a worn surface: a depth in the gap up to this changes the body's stiffness by no more
-than the mesh resolves."""
+"""Limit of the depth in the gap over the shortest cell edge at a worn surface: up to this the depth changes the body's
+stiffness by no more than the mesh resolves."""
 
 
 @dataclass(frozen=True)

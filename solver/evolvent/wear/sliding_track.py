@@ -59,7 +59,7 @@ class Travel:
         return np.asarray(np.asarray(self.translation) + np.cross(self.rotation, arms))[:, :d]
 
     def in_frame(self, placement: Placement) -> Travel:
-        """The same motion in the frame of a body placed there; in 2D its part in the plane."""
+        """The rigid motion in the frame of a body placed there; in 2D its part in the plane."""
         d = len(placement.translation)
         R, shift, in_plane = np.eye(3), np.zeros(3), np.arange(3) < d
         R[:d, :d], shift[:d] = placement.rotation, placement.translation

@@ -15,10 +15,10 @@ from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile, polar
 
 POINTS = 200
-"""Of a segment of a profile."""
+"""Number of points on a segment of a profile."""
 COLOURS = PINION, WHEEL
 TEXT_HEIGHT = 0.045
-"""Of a label, over the height of the axes."""
+"""Height of a label over that of the axes."""
 
 
 def tooth_form_picture(title: str, pair: GearPair) -> bytes:

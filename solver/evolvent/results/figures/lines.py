@@ -43,9 +43,9 @@ class Series:
     name: str
     """Name of the point."""
     cells: tuple[str, ...]
-    """Its coordinates in the table, as text."""
+    """Coordinates of the point as texts of the table."""
     values: Floats
-    """(frictions,), pressure [MPa]."""
+    """(frictions,) pressure at the point [MPa]."""
 
 
 def has_lines(run: RunData) -> bool:

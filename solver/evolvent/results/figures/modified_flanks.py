@@ -26,7 +26,7 @@ LEAST = 1e-3
 SHORTEST = 0.25
 """Length of a line that has a label, over that of the map along one axis."""
 POINTS = 201
-"""Of a map, each way; odd, so that mid-face is one."""
+"""Grid points of a map along each axis; odd, so that mid-face is one."""
 
 
 def has_modifications(run: RunData) -> bool:

@@ -85,7 +85,8 @@ def computed_excitation(
     loads: SceneTorques, comm: MPI.Comm, progress: Progress, kept: KeptPositions | None = None,
     prepare: Preparer = prepare_model,
 ) -> MeshExcitation:
-    """Of the scene's gears under each torque. kept: positions on disk. prepare: see `run_excitation`. Collective."""
+    """Excitation of the scene's gears under each torque. kept: positions on disk. prepare: as of `run_excitation`.
+    Collective."""
     problem = loads.problem
     angles = np.array(uniform_pitch(problem.pair.pinion.z, loads.scene.sweep.positions).angles)
     loaded = loaded_pitch(loads, angles, run_mesh, comm, progress, POSITIONS, kept, prepare)
@@ -96,8 +97,8 @@ def companion_of(
     excitation: MeshExcitation, loads: SceneTorques, comm: MPI.Comm, progress: Progress,
     kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
 ) -> CoarseExcitation:
-    """The same positions and torques on elements of twice the size, where the scene asks for error bars; an error of
-    meshing or solving becomes its `failure`, see `attempted`. Collective."""
+    """Excitation at the same positions and torques on elements of twice the size, where the scene asks for error bars;
+    an error of meshing or solving becomes its `failure`, see `attempted`. Collective."""
     if not wanted_output(loads.scene).error_bars:
         return NO_COMPANION
 

@@ -24,7 +24,7 @@ from evolvent_meshes.arrays import Floats
 
 KEPT, KEPT_COARSE = "results/excitation.npz", "results/excitation_coarse.npz"
 DEFLECTED = ".npz", "_deflected.npz"
-"""End of these names, and what it is on deflected flanks."""
+"""End of the names of these files, and its replacement for positions on deflected flanks."""
 KEPT_DEFLECTED = KEPT.replace(*DEFLECTED), KEPT_COARSE.replace(*DEFLECTED)
 
 
@@ -35,13 +35,13 @@ class KeptPositions:
     store: Store
     """Files of the call, with the identity of the gears, their torques and positions, see `identity`."""
     name: str
-    """File below OUT."""
+    """Name of the file below OUT."""
     resume: bool
-    """Whether the call goes on from those of an earlier one."""
+    """Whether the call continues from the positions of an earlier one."""
 
     @property
     def deflected(self) -> KeptPositions:
-        """The same gears, torques and positions on deflected flanks."""
+        """Positions of these gears and torques on deflected flanks."""
         return replace(self, name=self.name.replace(*DEFLECTED))
 
     def read(self) -> dict[int, Floats]:

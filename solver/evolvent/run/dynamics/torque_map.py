@@ -16,12 +16,12 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class TorqueMap:
-    """What was computed of a map."""
+    """Rows of torque_map.csv, and warnings on them."""
 
     rows: tuple[MapRow, ...]
-    """Under the lightest torque first."""
+    """Rows of the map, those of the lightest torque first."""
     warnings: tuple[str, ...]
-    """What a reader of them has to know."""
+    """Warnings on the rows, a sentence each."""
 
 
 def torque_map(

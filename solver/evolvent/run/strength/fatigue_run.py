@@ -36,7 +36,7 @@ from evolvent.strength.results.friction_fatigue import FrictionFatigue
 from evolvent.strength.results.pictures import FATIGUE_PICTURE, FATIGUE_SCENE
 
 AT_END = 1e-6
-"""A zone that begins so near [mm] to the end of the path of contact is none."""
+"""Tip-edge zones shorter than this [mm] are ignored."""
 TABLES = FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH, FATIGUE_SECTION, FATIGUE_FACTS
 WRITTEN = FATIGUE_SCENE.name, *(table.name for table in TABLES), f"pictures/{FATIGUE_PICTURE.name}"
 
@@ -86,7 +86,7 @@ def _solved(
 
 
 def _positions(run: RunData, index: int) -> list[LoadedPosition]:
-    """At the friction coefficient with this index."""
+    """Loaded positions of the pitch at the friction coefficient with this index."""
     return [
         LoadedPosition(k, each[index].result, each[index].cut, run.flank.z) for k, each in enumerate(run.positions)
     ]
@@ -102,7 +102,7 @@ def _fatigue(run: RunData, index: int, error: float, coarse: RunData | None) -> 
 
 
 def _flanks(run: RunData, index: int, inner: tuple[float, float]) -> tuple[FlankFatigue, FlankFatigue]:
-    """Of pinion and wheel. inner: roll distances [mm] between the tip-edge zones."""
+    """Fatigue of the flanks of pinion and wheel. inner: roll distances [mm] between the tip-edge zones."""
     section, friction = run.scene.fatigue or FatigueSection(), run.frictions[index]
     loads = FlankLoads.joined([each.loads(inner) for each in _positions(run, index)])
     pinion, wheel = _materials(run)

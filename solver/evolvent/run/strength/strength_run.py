@@ -83,8 +83,8 @@ def run_strength(
 
 
 def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:
-    """What loads the roots of pinion and wheel. Raises InputError where the standard's formulas do not hold for them.
-    """
+    """Loads of the roots of pinion and wheel for the standard. Raises InputError where its formulas do not hold for
+    them."""
     problem, section = gear_problem(scene), scene.strength or StrengthSection()
     pinion, wheel = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)
     for load in (pinion, wheel):

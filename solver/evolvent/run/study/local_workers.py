@@ -41,7 +41,7 @@ class LocalWorkers:
         self._failed_starts = 0
 
     def finished(self, tasks: Mapping[SceneTask, str]) -> Iterator[SceneRecord]:
-        """See `SceneWorkers`. Raises WorkersDie, OSError."""
+        """Records of the scenes as they are computed, in any order; see `SceneWorkers`. Raises WorkersDie, OSError."""
         self._groups.extend(_Group(each, self._count > 1) for each in sharing(tasks))
         count = min(self._count, sum(len(each.solving) for each in self._groups))
         for _ in range(count):
@@ -93,7 +93,7 @@ class LocalWorkers:
         return []
 
     def _replaced(self, worker: _Worker) -> list[SceneRecord]:
-        """Another worker takes the place of one that has died; its order is tried again, but for the fourth time."""
+        """Replaces a worker process that has ended unexpectedly. Its order is tried again up to three times."""
         worker.close()
         how = worker.ended()
         self._workers.remove(worker)
@@ -115,7 +115,7 @@ class LocalWorkers:
 
 
 class _Worker:
-    """A worker process, with what it does."""
+    """A worker process and its present order."""
 
     def __init__(self) -> None:
         self.connection, theirs = Pipe()
@@ -128,16 +128,16 @@ class _Worker:
                 pass_fds=[theirs.fileno()], process_group=0,  # Control-C is for this process
             )
         self.is_ready = False
-        """Whether it has started."""
+        """Whether the process has started."""
         self.order: Order | None = None
-        """That it carries out."""
+        """Order that the process is carrying out."""
         self.group: _Group | None = None
-        """Of the order's scenes."""
+        """Scenes that the order belongs to."""
         self.keeps: _Group | None = None
-        """Whose gears it has."""
+        """Scenes whose condensed gears the process holds."""
 
     def give(self, order: Order, group: _Group) -> None:
-        """Sends an order; if the worker has died, the connection tells so next."""
+        """Sends an order. That the process has ended shows when its connection is read next."""
         self.order, self.group = order, group
         if not isinstance(order, Solve) or not order.on_kept_gears:
             self.keeps = None
@@ -161,7 +161,7 @@ class _Worker:
 
 
 class _Group:
-    """Scenes that share gears, or a single one, as far as they are not handed out."""
+    """Scenes that share gears, or a single one, without those that were handed out."""
 
     def __init__(self, tasks: Line, several_workers: bool) -> None:
         self._shares = len(tasks) > 1

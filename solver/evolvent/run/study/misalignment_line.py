@@ -25,7 +25,8 @@ from evolvent_meshes.errors import EvolventError
 
 
 def line_name(task: SceneTask) -> str:
-    """The same of scenes that differ in misalignment only and are solved together; else that of the scene."""
+    """Name that scenes have in common which differ in misalignment only and are solved together; other scenes have
+    their own."""
     if task.compute != "excitation":
         return task.name
     pair = task.scene.pair.model_copy(update={"misalignment_um": 0.0})

@@ -41,15 +41,15 @@ class SceneTask:
     """A scene to be computed."""
 
     name: str
-    """Of its content."""
+    """Hash of the scene's content."""
     folder: Path
-    """Where its results go."""
+    """Folder for the results of the scene."""
     compute: Computation
-    """What is computed."""
+    """Computation, as the study file names it."""
     scene: Scene
-    """Valid."""
+    """Validated scene."""
     share_of_memory: int = 1
-    """How many scenes are computed at once on a machine; 0: its memory is not checked."""
+    """Number of scenes that are computed at once on a machine; 0: its memory is not checked."""
 
 
 def condense(tasks: Sequence[SceneTask]) -> LoadList:

@@ -63,7 +63,7 @@ class ScheduledWorkers:
         self._client = client
 
     def finished(self, tasks: Mapping[SceneTask, str]) -> Iterator[SceneRecord]:
-        """See `SceneWorkers`."""
+        """Records of the scenes as they are computed, in any order; see `SceneWorkers`."""
         submitted = self._submitted(sharing(tasks))
         handed: dict[str, Line] = {}
         waiting = as_completed(loop=self._client.loop)
@@ -92,7 +92,8 @@ class ScheduledWorkers:
 
 
 def _records(line: Line, done: Future) -> list[SceneRecord]:
-    """What a worker has returned; failures where it died of the scenes, or ended with an error of the program."""
+    """Records that a worker returned; failures where its process ended unexpectedly, or with an error of the program.
+    """
     error = done.exception()
     if error is None:
         found = done.result()

@@ -34,7 +34,7 @@ def lines(group: Iterable[SceneTask]) -> list[Line]:
 
 
 def _grouped(tasks: Iterable[SceneTask], name: Callable[[SceneTask], str]) -> list[Line]:
-    """Those of one name together, in their order."""
+    """Groups of tasks with the same name, in their order."""
     groups: dict[str, list[SceneTask]] = {}
     for task in tasks:
         groups.setdefault(name(task), []).append(task)

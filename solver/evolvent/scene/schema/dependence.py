@@ -24,13 +24,14 @@ class Dependent:
     """A key that needs a main key."""
 
     key: str
-    """Dotted."""
+    """Dotted key that needs a main key."""
     default: Any
-    """With it the key says nothing."""
+    """Value with which the key has no effect of its own."""
     mains: tuple[str, ...]
-    """Dotted; one of them is enough."""
+    """Dotted main keys; one of them is enough."""
     holding: Any
-    """What the list of a main key must hold; None where any value but none, 0, false and the empty list will do."""
+    """Value that the list of a main key must hold; None where any value but none, 0, false and the empty list will do.
+    """
 
     @property
     def wanted(self) -> str:

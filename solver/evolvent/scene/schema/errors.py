@@ -22,7 +22,7 @@ from evolvent.scene.schema.section import SceneSection
 from evolvent_meshes.errors import InputError
 
 NOTHING = "nothing"
-"""What was found where something is missing."""
+"""Word for a missing value in a message."""
 MOST = 20
 """Largest number of problems in one message."""
 LONGEST_NUMBER = 40
@@ -42,11 +42,11 @@ class InputProblem:
     key: str
     """Dotted key of the scene, as `--set` takes it, or name of an option."""
     found: str
-    """What was found."""
+    """Value that was given, or words for its error."""
     allowed: str
-    """What is allowed."""
+    """Values that are allowed."""
     remedy: str
-    """What to do."""
+    """Remedy: how to correct the input."""
 
     def __str__(self) -> str:
         return f"{self.key}: found {self.found}; allowed: {self.allowed}; remedy: {self.remedy}"
@@ -205,7 +205,7 @@ def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -
 
 
 def _meant(name: str, parents: list[str], model: type[SceneSection], is_section: bool) -> Meant | None:
-    """What was meant by an unknown key or section."""
+    """Probable meaning of an unknown key or section; None where there is none."""
     parent = dotted(parents)
     inside = section_of(_declaration(parents, model)) if parents else model
     assert inside is not None

@@ -39,7 +39,8 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
 
 NEGATIVE_VOLUME = 1e-7
-"""Of a block's volume: negative depths up to this are cut off; a tenth of the tolerance of the volume's certificate."""
+"""Negative over positive volume of a block up to which negative depths are cut off; a tenth of the tolerance of the
+volume's certificate."""
 
 
 class GearWear:
@@ -140,7 +141,7 @@ class GearWear:
         return self.grids[gear].chart(self.model.pair.gears[gear], depth)
 
     def vibration(self, state: PitchState) -> Vibration | None:
-        """Of the pitch, all ranks together; None under a constant torque."""
+        """Vibration of the pitch with the searches of all ranks; None under a constant torque. Collective."""
         operation = state.operation
         if operation is None:
             return None
@@ -161,7 +162,7 @@ class GearWear:
         return operation, replace(model, load=operation.load)
 
     def searches(self, state: PitchState) -> list[SearchedAt]:
-        """Where the contact of each position was searched, of all ranks."""
+        """Places where the contact of each position was searched, of all ranks."""
         mine = [shared.searched for shared in state.shared]
         return [search for part in self._comm.allgather(mine) for search in part]
 

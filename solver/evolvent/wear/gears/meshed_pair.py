@@ -58,8 +58,8 @@ class MeshedPair:
 
     @staticmethod
     def of(model: GearModel) -> MeshedPair:
-        """Of gears without wear in their meshes. Raises InputError where the nodes of a flank are no grid, and where
-        flanks have levels of their own."""
+        """The meshed pair of gears without wear in their meshes. Raises InputError where the nodes of a flank are no
+        grid, and where flanks have levels of their own."""
         if any(body.levels for body in model.bodies):
             remedy = "write MeshSettings(two_level=False)"
             refuse("wear", "gears whose flanks are those of their meshes", Words("flanks with levels"), remedy)

@@ -74,7 +74,7 @@ def _checkpoint(arrays: Arrays) -> StudyCheckpoint:
 
 
 def _vibration(arrays: Mapping[str, Any]) -> Vibration | None:
-    """What was written of it."""
+    """Vibration of an archived checkpoint; None where it has none."""
     if not len(arrays["vibration"]):
         return None
     s, velocity, low, high = arrays["vibration"].tolist()

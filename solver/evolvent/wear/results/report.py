@@ -48,9 +48,9 @@ class PairReport:
     cycles: float
     """Revolutions of the pinion."""
     pinion: GearReport
-    """Its wear."""
+    """Wear of the pinion."""
     wheel: GearReport
-    """Its wear."""
+    """Wear of the wheel."""
     max_pressure_MPa: float
     """Largest contact pressure of a tooth's engagement, away from the starts of linear reliefs."""
     kink_pressure_MPa: float
@@ -68,12 +68,12 @@ class PairReport:
 
 @dataclass(frozen=True)
 class WearReport:
-    """wear.json."""
+    """Content of wear.json."""
 
     K_over_H_mm2_per_N: Mapping[str, float]
     """Archard's coefficient over the hardness, of pinion and wheel."""
     blocks: int
-    """Blocks of cycles."""
+    """Number of blocks of cycles."""
     refused_blocks: int
     """Longer blocks that were tried and rejected."""
     largest_block_error: float

@@ -51,23 +51,23 @@ class Statics:
 
 @dataclass(frozen=True)
 class KeptCases:
-    """Of one scene."""
+    """Archived cases and static positions of a scene."""
 
     cases: Store
     """Files with the identity of everything in the scene that a case depends on."""
     statics: Store
     """Files with the identity of what the positions without inertia depend on."""
     names: tuple[str, ...]
-    """Of the cases by their numbers, every speed at every friction coefficient."""
+    """Names of the cases by their numbers: every speed at every friction coefficient."""
     pair: GearPair
-    """The gears."""
+    """Geometry of the gear pair."""
     kind: str = ""
-    """Of the cases."""
+    """Kind of the cases: empty for those that are reported, else `COARSE` or `FINER_STEPS`."""
 
     @staticmethod
     def of(scene: Scene, pair: GearPair, out: Path, kind: str = "") -> KeptCases:
-        """Below OUT. scene: with a section [transient]. kind: empty for those that are reported, else `COARSE` or
-        `FINER_STEPS`."""
+        """Archived cases of a scene with a section [transient], below OUT. kind: empty for those that are reported,
+        else `COARSE` or `FINER_STEPS`."""
         section = transient_section(scene)
         names = [f"{speed:.17g}rpm_{i}" for speed in section.speeds_rpm for i in range(len(scene.contact.friction))]
         highest = (max(section.speeds_rpm),) if section.modes_per_harmonic is None else ()
@@ -77,7 +77,7 @@ class KeptCases:
         return KeptCases(cases, statics, tuple(names), pair, kind)
 
     def read_static(self) -> Statics | None:
-        """None where there are none. Raises ArchiveError."""
+        """The archived static positions; None where there are none. Raises ArchiveError."""
         return self.statics.read(self._name("static"), self._static)
 
     def write_static(self, static: Statics) -> None:
@@ -134,12 +134,12 @@ def another(path: Path) -> str:
 
 
 def _fingerprint(scene: Scene, section: TransientSection, speeds: tuple[float, ...]) -> str:
-    """Of the scene with these speeds."""
+    """Fingerprint of the scene with these speeds."""
     return fingerprint(scene.model_copy(update={"transient": section.model_copy(update={"speeds_rpm": speeds})}))
 
 
 def _steps(accepted: float, rejected: float, *others: float) -> StepsTaken:
-    """From a row of numbers, of which the first ones are whole."""
+    """Counts and figures of the time steps from an archived row of numbers."""
     return StepsTaken(int(accepted), int(rejected), *others)
 
 

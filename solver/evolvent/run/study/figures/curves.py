@@ -45,13 +45,13 @@ def curves_figure(values: StudyValues, names: Sequence[str]) -> Figure:
 
 
 def _label(name: str, unit: bool = True) -> str:
-    """In words, with the friction coefficient behind."""
+    """Name of a figure in words, with the friction coefficient in brackets."""
     figure, space, friction = name.partition(" (")
     return label(figure, unit) + space + friction
 
 
 def _subtitle(values: StudyValues, names: Sequence[str]) -> str:
-    """From where to where the first figure goes."""
+    """Sentence on the smallest and largest value of the first figure."""
     axis, own = values.axes[0], values.of(names[0])
     known = np.flatnonzero(np.isfinite(own))
     low, high = known[np.argmin(own[known])], known[np.argmax(own[known])]

@@ -85,7 +85,7 @@ def _numbers(axes: Axes, grid: Floats, norm: Normalize) -> None:
 
 
 def _range(values: StudyValues, grid: Floats) -> str:
-    """Where the figure is least and largest."""
+    """Sentence on the smallest and largest value of the figure, and at which parameters."""
     said, texts = [], cell_texts(grid)
     for word, place in (("least", np.nanargmin(grid)), ("largest", np.nanargmax(grid))):
         j, i = np.unravel_index(int(place), grid.shape)

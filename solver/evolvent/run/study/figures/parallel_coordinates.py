@@ -65,7 +65,7 @@ def parallel_figure(values: StudyValues, names: Sequence[str]) -> Figure:
 
 
 def _scaled(column: Floats, known: Floats) -> Floats:
-    """From 0 at the lowest value to 1 at the highest; a half where all are alike."""
+    """Values scaled from 0 at the lowest to 1 at the highest; a half where all are alike."""
     low, size = float(known.min()), float(np.ptp(known))
     return (column - low) / size if size > 0.0 else np.full(len(column), 0.5)
 

@@ -21,7 +21,7 @@ class Axis:
     """Keys that take their values together."""
 
     keys: tuple[str, ...]
-    """Of the scene, dotted."""
+    """Dotted keys of the scene."""
     rows: tuple[SampleRow, ...]
     """Values of the keys, one row a point of the axis."""
     is_sampled: bool = False

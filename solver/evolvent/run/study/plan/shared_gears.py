@@ -28,13 +28,14 @@ SHARING: tuple[Computation, ...] = ("run", "excitation", "dynamics", "strength")
 
 
 def meshes(scene: Scene, compute: Computation) -> tuple[Mesher, ...]:
-    """From which a scene's gears are condensed: for results, and for error bars where it asks for them."""
+    """Meshes from which a scene's gears are condensed: those of the results, and those of error bars where it asks for
+    them."""
     both = scene_root_meshes(scene) if compute == "strength" else (run_mesh, companion_mesh)
     return both if wanted_output(scene).error_bars else both[:1]
 
 
 def own_torque(scene: Scene) -> SceneTorques:
-    """For the excitation of a scene under its own torque."""
+    """Torques of an excitation of a scene: its own torque alone."""
     return SceneTorques(scene.model_copy(update={"wear": None}), (1e3 * scene.load.torque_Nm,))
 
 
@@ -78,7 +79,7 @@ def _without_torque(scene: Scene) -> str:
 
 
 def _serving(scene: Scene, torques: tuple[float, float]) -> Scene:
-    """On meshes for a range of torques [N·m], unless it says itself for which."""
+    """The scene on meshes for a range of torques [N·m], unless it gives such a range itself."""
     if torques == (scene.load.torque_Nm, scene.load.torque_Nm) or scene.load.mesh_torques_Nm is not None:
         return scene
     load = scene.load.model_copy(update={"mesh_torques_Nm": torques})

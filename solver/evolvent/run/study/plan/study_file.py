@@ -21,7 +21,7 @@ COMPUTATIONS: tuple[Computation, ...] = get_args(Computation)
 MOST_SCENES = 1_000_000
 """Largest number of scenes of a study."""
 PARTS = "grid", "list", "latin_hypercube.ranges"
-"""Where parameters stand."""
+"""Sections of a study file that hold parameters."""
 EXAMPLE = "write for example load.torque_Nm = [100.0, 200.0]"
 NAMED = 5
 """Largest number of wrong values in a message."""

@@ -30,15 +30,15 @@ class StudyScene:
     """A scene of a study, or the reason why there is none."""
 
     parameters: Mapping[str, Any]
-    """Key -> value."""
+    """Key of the scene -> value."""
     scene: Scene | None
-    """None where the values are refused."""
+    """Validated scene; None where the values are refused."""
     refusal: str
-    """Why they are refused; empty where they are not."""
+    """Why the values are refused; empty where they are not."""
     name: str
-    """Of its content: of all that its results depend on, and of what is computed."""
+    """Hash of everything that the results of the scene depend on, and of the computation."""
     gears: str
-    """Name of the condensed gears that it can share; empty where it has its own."""
+    """Name of the condensed gears that the scene can share; empty where it has its own."""
 
 
 def study_scenes(study: StudyFile, path: Path, overrides: Sequence[str], version: str) -> list[StudyScene]:
@@ -64,7 +64,7 @@ def study_scenes(study: StudyFile, path: Path, overrides: Sequence[str], version
 
 
 def _counted(count: int) -> str:
-    """How many scenes are refused, which are all that there are."""
+    """Number of refused scenes in words, where all of a study are refused."""
     return "its scene" if count == 1 else f"all of its {count:,} scenes are refused, the first one for"
 
 
@@ -112,7 +112,8 @@ def _take_out(values: Values, name: str) -> None:
 
 
 def _sharing(scenes: Sequence[StudyScene], compute: Computation) -> list[StudyScene]:
-    """With the names of the gears that several scenes share, on meshes that serve the torques of all of these."""
+    """The scenes with the names of the gears that several of them share, on meshes that serve the torques of all of
+    these."""
     known = {number: each.scene for number, each in enumerate(scenes) if each.scene is not None}
     served = dict(zip(known, on_shared_meshes(list(known.values()), compute)))
     names = dict(zip(known, gears_names(list(served.values()), compute)))

@@ -17,7 +17,7 @@ DEEP = 2
 
 
 def meant_key(name: str, section: str, here: Collection[str], everywhere: Collection[str], kind: str) -> Meant | None:
-    """What was meant by an unknown key; None where nothing is known of it.
+    """Probable meaning of an unknown key; None where there is none.
 
     section:    dotted, that it is in; empty for the top of the file.
     here:       dotted keys of this section.
@@ -37,8 +37,8 @@ def meant_key(name: str, section: str, here: Collection[str], everywhere: Collec
 
 
 def meant_section(name: str, parent: str, here: Collection[str], kind: str) -> Meant | None:
-    """What was meant by an unknown section; None where nothing is known of it. Parameters: as of `meant_key`, of
-    sections."""
+    """Probable meaning of an unknown section; None where there is none. Parameters as of `meant_key`, with sections in
+    place of keys."""
     terms = SECTION_TERMS if kind == "scene" else STUDY_TERMS
     if meant := meant_by(name.lower(), parent, terms):
         return meant

@@ -30,7 +30,7 @@ def meant_value(value: Any, field: FieldInfo) -> Any | None:
 
 
 def expected(kind: str, value: Any) -> str:
-    """What to write instead of a value of the wrong type.
+    """Remedy for a value of the wrong type.
 
     kind: type of pydantic's error. Empty where the remedy of the key says it.
     """
@@ -50,7 +50,7 @@ def _fits(value: Any, adapter: TypeAdapter[Any]) -> bool:
 
 
 def _words_like(value: Any, annotation: Any) -> list[Any]:
-    """What a word may stand for, and allowed words that are spelled much alike."""
+    """Values that a word may stand for, and allowed words of similar spelling."""
     if not isinstance(value, str) or len(value) > LONGEST:
         return []
     return [*values_meant(value), *difflib.get_close_matches(value.lower(), _choices(annotation), 1, ALIKE)]

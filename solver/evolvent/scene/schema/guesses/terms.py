@@ -7,16 +7,16 @@ from dataclasses import dataclass
 
 GEARS = ("pinion", "wheel")
 GEAR = "gear"
-"""In tables: the section of either gear."""
+"""Section of either gear in the tables of terms."""
 
 
 @dataclass(frozen=True)
 class Term:
-    """Words for one quantity."""
+    """Words of users for one quantity."""
 
     words: str
-    """Separated by spaces, in lower case, without their unit. One that means this in one section only has the section
-    in front: `pair.a`."""
+    """The words, separated by spaces, in lower case, without their unit. A word that has this meaning in one section
+    only has the section in front: `pair.a`."""
     keys: tuple[str, ...] = ()
     """Dotted keys of the scene that hold the quantity; `gear.` stands for `pinion.` or `wheel.`. Without any the scene
     has no key for it."""
@@ -28,16 +28,16 @@ class Term:
 
 @dataclass(frozen=True)
 class Meant:
-    """What a scene has in place of an unknown key."""
+    """Keys of a scene that an unknown key may stand for."""
 
     keys: tuple[str, ...]
-    """Dotted, as they are written; none where there is no key for it."""
+    """Dotted keys as they are written in the file; none where the scene has no key for it."""
     note: str
-    """As of `Term`."""
+    """Conversion of the value, if not by its unit; or the reason why there is no key."""
 
 
 def meant_by(stem: str, section: str, terms: Iterable[Term]) -> Meant | None:
-    """What a word means in a section; None where no table has it.
+    """Keys that a word stands for in a section; None where no table has it.
 
     stem: the word in lower case, without its unit. section: dotted, empty for the top of the file.
     """

@@ -52,7 +52,7 @@ def _tip_edge(pair: GearPair) -> list[Line]:
 
 
 def _tip_land(gear: GearParameters) -> float:
-    """Normal width of what is left of the tip circle [mm]: s_an of a sharp tip."""
+    """Normal width of the tip land that remains [mm]: s_an of a sharp tip."""
     whole, edge = gear.normal_thickness(gear.tip_diameter), gear.tip_edge
     return whole if edge is None else whole * edge.end[1] / gear.half_angle(gear.tip_diameter)
 

@@ -25,7 +25,7 @@ SWEEPS = 4
 RESOLVED = 0.25
 """Frequency up to which natural modes are computed over that of time steps."""
 STEPS = 1, 1, 4
-"""Time steps of a motion, of the same one on coarser gears and of that in shorter steps, over those of the motion."""
+"""Time steps of a motion, of the motion on coarser gears and of that in shorter steps, over those of the motion."""
 
 
 def speeds_time(natural: float, section: DynamicsSection, error_bars: bool) -> float:
@@ -60,7 +60,7 @@ def natural_modes(scene: Scene, section: TransientSection) -> tuple[float, ...]:
 
 
 def too_many_modes(scene: Scene, section: TransientSection) -> InputProblem | None:
-    """Why a transient would compute natural modes for hours; None where it would not."""
+    """Problem of a transient that would compute natural modes for hours; None where it would not."""
     if section.modes_per_harmonic is not None or max(modes := natural_modes(scene, section)) <= MOST_MODES:
         return None
     found = f"{shown(section.speeds_rpm)} in {scene.sweep.positions} positions: about {max(modes):,.0f} modes of a gear"

@@ -26,7 +26,7 @@ BY_ISO = "by c_γα of ISO 6336-1"
 
 @dataclass(frozen=True)
 class PlannedSteps:
-    """The time steps of a speed."""
+    """Time steps of a transient at one speed."""
 
     speed: float
     """Speed of the pinion [r/min]."""
@@ -105,8 +105,8 @@ def planned_steps(scene: Scene, section: TransientSection) -> list[PlannedSteps]
 
 
 def natural_frequency(scene: Scene, section: TransientSection) -> float:
-    """f_n [Hz] of the gears on c_γα of ISO 6336-1, with the inertia that swings: of both gears, or of the one with the
-    torque."""
+    """Natural frequency f_n [Hz] of the gears on c_γα of ISO 6336-1, with the inertia that swings: of both gears, or of
+    the one with the torque."""
     problem = gear_problem(scene)
     pair, force = problem.pair, problem.torque / problem.pair.gears[problem.torque_on].base_radius
     moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
@@ -115,7 +115,7 @@ def natural_frequency(scene: Scene, section: TransientSection) -> float:
 
 
 def _swinging_mass(scene: Scene, section: TransientSection, problem: GearProblem) -> float:
-    """Along the line of action [t]."""
+    """Equivalent mass along the line of action [t] of the inertia that swings."""
     inertias = moments_of_inertia(problem.pair, scene.dynamics or DynamicsSection())
     if section.drive == "free":
         return equivalent_mass(problem.pair, inertias)

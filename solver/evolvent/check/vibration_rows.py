@@ -47,5 +47,5 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
 
 
 def vibration_warnings(scene: Scene) -> list[str]:
-    """Why `evolvent dynamics` would refuse a scene with the section; none where it would not."""
+    """Reasons why `evolvent dynamics` would refuse a scene with [dynamics]; none where it would not."""
     return [f"`evolvent dynamics` would refuse this scene: {why}." for why in refusals(scene)]

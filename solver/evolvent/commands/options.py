@@ -16,7 +16,7 @@ from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.output import SKIP_NAMES
 
 MOST_DIGITS, MOST_SHOWN = 9, 40
-"""Digits of a number of worker processes; characters of one that is none in a message."""
+"""Largest number of digits of a number of worker processes, and of characters of an invalid one in a message."""
 MOST_PERCENT = 1000.0
 """Largest part of a scene's torque in a load list."""
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)

@@ -1,4 +1,4 @@
-"""A coarse companion, whose failure costs the error bars only: results are not lost for them."""
+"""Solution of a coarse companion. Its failure costs the error bars only: results are not lost for it."""
 
 from __future__ import annotations
 

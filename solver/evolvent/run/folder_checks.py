@@ -1,4 +1,5 @@
-"""Checks of the output folder before a run writes to it: no foreign file is replaced, no result is lost unasked."""
+"""Checks of the output folder before a run writes to it: no foreign file is replaced, and no result is lost without
+--overwrite."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ WRITTEN = (
 STUDY = "study.json"
 """File in the folder of a study with the identity of its table."""
 NAMED = 10
-"""Largest number of foreign files in a message."""
+"""Largest number of foreign files that a message names."""
 
 
 T = TypeVar("T")

@@ -89,7 +89,7 @@ def _levels_sentence(scene: Scene) -> str:
 
 
 def one_mesh_reason(scene: Scene) -> str:
-    """A sentence where flanks of a large mesh have no levels of their own though the scene leaves that open; else
+    """A sentence on a large mesh whose flanks have no levels of their own although the scene leaves that open; else
     empty."""
     problem = gear_problem(scene)
     if "two-level" in scene.skip.off or problem.is_plane or not is_large(problem):
@@ -211,7 +211,7 @@ def skips(scene: Scene, name: SkipName) -> bool:
 
 
 def skipped(scene: Scene) -> list[Skipped]:
-    """The skips that are made."""
+    """The skips that a scene makes, each with its sentence."""
     return [Skipped(skip.name, skip.sentence(scene)) for skip in SKIPS if skips(scene, skip.name)]
 
 
@@ -221,8 +221,8 @@ def switched_off(scene: Scene) -> list[SkipName]:
 
 
 def with_deflected_flanks(scene: Scene) -> Scene:
-    """The scene that asks for deflected flanks, by which a run's files tell that they were needed; the same scene where
-    it does so already or where they do not apply."""
+    """The scene with deflected flanks, by which the files of a run show that they were needed. Unchanged where it has
+    them already or where they do not apply."""
     if not skips(scene, "deflected-flanks"):
         return scene
     off = SkipSection(off=(*scene.skip.off, "deflected-flanks"))

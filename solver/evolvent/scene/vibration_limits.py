@@ -1,4 +1,4 @@
-"""Which speeds, inertias and compliances a vibration can be computed with, and which of them are doubtful."""
+"""Limits of the speeds, inertias and compliances of a vibration, and values that are doubtful."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from evolvent.scene.schema.errors import InputProblem, shown
 from evolvent_meshes.gears.pair import GearPair
 
 FASTEST_RIM, FAST_RIM = 400.0, 200.0
-"""Speed of a tip circle [m/s] above which a scene is refused, and is doubtful. At 400 m/s rotation alone puts 1 GPa at
-the bore of a steel disc, (3 + ν)/4 ϱ v²; the fastest gears that are built have about 200 m/s."""
+"""Peripheral speeds of a tip circle [m/s] above which a scene is refused, and is doubtful. At 400 m/s rotation alone
+puts 1 GPa at the bore of a steel disc, (3 + ν)/4 ϱ v²; the fastest gears that are built have about 200 m/s."""
 SLOWEST = 0.01
 """Lowest speed of a vibration over the natural one: below it a mesh period has a hundred natural ones and more, in
 which vibration dies away, and the time that it takes to compute goes with their number."""
@@ -27,7 +27,8 @@ value in kg·mm² is 1e6 times one in kg·m²; a flywheel above it turns as unif
 LIGHTEST = 0.01
 """Moment of inertia over that of the teeth alone below which a scene is refused; below 1 it is doubtful."""
 SOFT = 0.05
-"""Stiffness in series with the mesh over that of the mesh by ISO 6336-1, below which it is doubtful."""
+"""Stiffness in series with the mesh over that of the mesh by ISO 6336-1, below which the stiffness in series is
+doubtful."""
 
 
 @dataclass(frozen=True)
@@ -92,12 +93,12 @@ class PlannedVibration:
 
 
 def impossible(planned: PlannedVibration) -> InputProblem | None:
-    """The first thing with which a vibration cannot be computed, None where there is none."""
+    """First problem for which a vibration cannot be computed, None where there is none."""
     return next((each for part in (_inertias, _series, _speeds) for each in part(planned)), None)
 
 
 def doubtful(planned: PlannedVibration) -> list[str]:
-    """A sentence on each value that is hardly meant."""
+    """A sentence on each value that is unlikely to be intended."""
     found = []
     for name, value, teeth, disc in planned.inertias:
         if value < teeth:

@@ -84,7 +84,7 @@ class WearStudy:
 
     @property
     def areas(self) -> Floats:
-        """(n,) of all worn nodes, and of the tracks [mm²; mm in 2D]."""
+        """(n,) areas of all worn nodes, and of the nodes of tracks [mm²; mm in 2D]."""
         return self.geometry.areas
 
     def by_side(self, depth: Floats) -> SideDepths:

@@ -83,7 +83,7 @@ class TrackCoordinate:
     radial: bool = False
 
     def at(self, points: Floats) -> Floats:
-        """c (q,) of points (q, d)."""
+        """Coordinates c (q,) of points (q, d)."""
         arms = np.pad(points, ((0, 0), (0, 3 - points.shape[1]))) - self.centre
         along = arms @ self.direction
         return np.linalg.norm(arms - along[:, None] * self.direction, axis=1) if self.radial else along
@@ -104,7 +104,7 @@ class Track:
 
     @cached_property
     def areas(self) -> Floats:
-        """m_k (g,) [mm²; mm in 2D], exact where l is linear in c."""
+        """Areas m_k (g,) of the nodes [mm²; mm in 2D], exact where l is linear in c."""
         if len(self.grid) == 1:
             return self.lengths
         step, low, high = np.diff(self.grid) / 6.0, self.lengths[:-1], self.lengths[1:]

@@ -28,7 +28,7 @@ class TablePicture:
     """A picture, and the tables that it is drawn from."""
 
     name: str
-    """Name of its file in OUT/pictures."""
+    """Name of the file in OUT/pictures."""
     needs: tuple[Readable, ...]
     """Tables that it is drawn from; a folder without one of them has no such picture."""
     draw: str
@@ -36,11 +36,11 @@ class TablePicture:
     matplotlib takes a second to import."""
 
     def is_of(self, folder: Path) -> bool:
-        """Whether the folder has all its tables."""
+        """Whether the folder has all tables that the picture is drawn from."""
         return all((folder / table.name).is_file() for table in self.needs)
 
     def drawn(self, folder: Path) -> bytes:
-        """Content of its file. Raises ArchiveError."""
+        """Content of the picture's file. Raises ArchiveError."""
         module, _, function = self.draw.partition(":")
         picture: bytes = getattr(import_module(module), function)(*(table.read(folder) for table in self.needs))
         return picture

@@ -101,7 +101,8 @@ def _upright(points: Floats) -> Floats:
 
 
 def _draw_diameters(axes: Axes, diameters: dict[str, float], width: float) -> None:
-    """Arcs of those in the picture, and their names at the right, moved apart where they would cover each other."""
+    """Draws arcs of the diameters in the picture, and their names at the right, moved apart where they would cover each
+    other."""
     bottom, top = axes.get_ylim()
     step = TEXT_HEIGHT * (top - bottom)
     free = np.inf

@@ -110,6 +110,6 @@ def by_rotation(curve: Curve, values: Floats) -> dict[float, float]:
 
 
 def keys(angle: Floats | Iterable[float]) -> list[float]:
-    """Rotations [rad] as in `by_rotation`."""
+    """Rotations [rad], rounded as the keys of `by_rotation`."""
     rounded: list[float] = (np.round(np.asarray(angle, dtype=float), DIGITS) + 0.0).tolist()  # no -0.0
     return rounded

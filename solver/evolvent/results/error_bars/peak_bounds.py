@@ -21,10 +21,10 @@ import numpy as np
 from evolvent_meshes.arrays import Floats
 
 SMOOTH = 0.75
-"""Part of the height of the intersection of two lines above the samples that a parabola with these slopes does not
-reach."""
+"""Part of the height of the intersection of two lines above the samples by which a parabola with these slopes stays
+below it."""
 INNER = 0.2
-"""Least part of an interval between a place in it and its ends."""
+"""Smallest distance of a peak from the ends of its interval, over the interval."""
 STEEP = 4.0
 """Ratio of the slopes on both sides from which on the steeper one is that of a jump."""
 ROUNDING = 1e-9

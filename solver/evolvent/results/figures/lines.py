@@ -101,7 +101,7 @@ def label_rows(places: Sequence[float], beside: float) -> list[int]:
 
 
 def _points_named(names: Collection[str]) -> str:
-    """Footnote with the meaning of these points."""
+    """Footnote with the meaning of the points of the path of contact."""
     meanings = "; ".join(f"{name}: {what}" for name, what in PATH_POINTS.items() if name in names)
     return f"{meanings}; in the transverse section (ISO 21771)."
 

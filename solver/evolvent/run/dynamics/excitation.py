@@ -69,8 +69,8 @@ def run_excitation(
 def writing_results(
     out: Path, written: Sequence[str], comm: MPI.Comm, resume: bool, overwrite: bool
 ) -> AbstractContextManager[list[str]]:
-    """Context in which no other run writes to the folder. Gives a sentence where there is nothing to go on from.
-    Collective. written: names of what is written in the end.
+    """Context in which no other run writes to the folder. Gives a sentence where there is nothing to resume.
+    Collective. written: names of all files that the command writes.
 
     Raises FolderError where files of others would be lost, or results unasked.
     """
@@ -154,7 +154,7 @@ def loaded_pitch(
 def _written(
     folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques
 ) -> list[str]:
-    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    """Writes all files, in place of those of an earlier call. On rank 0 alone."""
     folder.remove(OF_DYNAMICS)
     return write_excitation(folder, excitation, companion, loads)
 

@@ -30,7 +30,7 @@ torque on, at standard from 2 %."""
 
 @dataclass(frozen=True)
 class SceneTorques:
-    """A scene and the torques that it is solved under."""
+    """A scene and the torques under which its excitation is computed."""
 
     scene: Scene
     """Scene without wear, under the torque that the meshes are sized for."""

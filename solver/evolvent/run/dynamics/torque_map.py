@@ -54,7 +54,8 @@ def torque_map(
 
 
 def _beyond(rows: Sequence[MapRow], heaviest: float) -> list[str]:
-    """Torques under which the mesh force leaves the force surface. heaviest: of its torques [N]."""
+    """Warning of torques under which the mesh force leaves the force surface. heaviest: load of its heaviest torque
+    [N]."""
     shares: dict[float, float] = {}
     for row in rows:
         shares[row.torque_Nm] = max(row.largest_force_N / heaviest, shares.get(row.torque_Nm, 0.0))

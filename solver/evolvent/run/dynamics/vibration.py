@@ -101,7 +101,7 @@ def _written(
     excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques, section: DynamicsSection,
     settings: DriveSettings, out: Path, progress: Progress,
 ) -> list[str]:
-    """Sweeps the speeds and writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    """Sweeps the speeds and writes all files, in place of those of an earlier call. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), loads.problem
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus

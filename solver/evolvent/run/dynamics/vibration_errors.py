@@ -1,4 +1,4 @@
-"""The vibration on other excitations, for its error bars: that of the coarse companion, and every other position."""
+"""Vibration on other excitations, for its error bars: on that of the coarse companion, and on every other position."""
 
 from __future__ import annotations
 

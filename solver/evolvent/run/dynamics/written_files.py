@@ -1,4 +1,4 @@
-"""Names of what `evolvent excitation` and `evolvent dynamics` write below OUT."""
+"""Names of the files that `evolvent excitation` and `evolvent dynamics` write below OUT."""
 
 from __future__ import annotations
 

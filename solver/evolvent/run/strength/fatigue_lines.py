@@ -49,7 +49,8 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
 
 
 def _with_flags(row: FatigueRow, first: FatigueRow | None) -> FatigueRow:
-    """A row with the flags of the point that is printed: where it is that of the first coefficient, of its row."""
+    """A row with the flags of the point that is printed: those of the first coefficient's row where it is that row's
+    point."""
     if first is None or not _at_point(row, changed=True):
         return row
     return replace(row, at_zone_end=first.at_zone_end, near_friction_reversal=first.near_friction_reversal)

@@ -1,4 +1,4 @@
-"""Worker processes on this machine: started here, reached by a pair of connected sockets without an address each."""
+"""Worker processes on this machine: started here, each reached by a pair of connected sockets without an address."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from evolvent_meshes.errors import EvolventError
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 STARTS = 10
-"""Largest number of worker processes that end one after the other while they start."""
+"""Largest number of worker processes in a row that may end while they start."""
 GRACE = 5.0
-"""Time that a worker without work has to end by itself [s]."""
+"""Time [s] that an idle worker process has to end by itself."""
 
 
 class WorkersDie(EvolventError):
-    """Worker processes end before they can compute anything."""
+    """Worker processes ended before they could compute anything."""
 
 
 class LocalWorkers:
-    """Worker processes, each of which computes one scene at a time on one core, and is replaced where it dies. None
-    outlives this process. count: how many there are at most; there are no more than tasks."""
+    """Worker processes, each of which computes one scene at a time on one core, and is replaced where it ends
+    unexpectedly. None outlives this process. count: largest number of processes; there are no more than tasks."""
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -62,20 +62,20 @@ class LocalWorkers:
             worker.ended()
 
     def _is_unfinished(self) -> bool:
-        """Whether a scene is to be handed out, or computed by a worker. Groups without such scenes go."""
+        """Whether a scene is to be handed out, or is being computed by a worker. Removes groups without such scenes."""
         while self._groups and not self._groups[0].solving:
             self._groups.popleft()
         return bool(self._groups) or any(each.order is not None for each in self._workers)
 
     def _occupy(self, worker: _Worker) -> None:
-        """Gives a worker what it can do, first on the gears that it keeps."""
+        """Gives a worker its next order, first on the gears that it holds."""
         for group in ([worker.keeps] if worker.keeps is not None else []) + list(self._groups):
             if (order := group.next_for(worker.keeps is group)) is not None:
                 worker.give(order, group)
                 return
 
     def _hear(self, worker: _Worker) -> list[SceneRecord]:
-        """Records that a worker sends, or that follow from its death. Raises WorkersDie."""
+        """Records that a worker sends, or those of scenes given up as it ended unexpectedly. Raises WorkersDie."""
         try:
             answer = worker.connection.recv()
         except (EOFError, OSError):
@@ -166,10 +166,10 @@ class _Group:
     def __init__(self, tasks: Line, several_workers: bool) -> None:
         self._shares = len(tasks) > 1
         self.solving = deque(Solve(line, self._shares) for line in lines(tasks))
-        """Orders to come."""
+        """Orders that are still to be handed out."""
         self._condense = Condense(tasks, several_workers and len(self.solving) > 1)
         self._keep: Keep | None = None
-        """The condensed gears for other workers."""
+        """Order for other workers to hold the condensed gears."""
         self._is_condensing = False
 
     def next_for(self, keeps_gears: bool) -> Order | None:
@@ -187,13 +187,13 @@ class _Group:
         return self._condense
 
     def condensed(self, gears: Answer) -> None:
-        """A worker has condensed the gears, or was sent them (None)."""
+        """Takes over gears that a worker has condensed; None where it was sent them."""
         if isinstance(gears, bytes):
             self._is_condensing = False
             self._keep = Keep(gears) if gears else None
 
     def again(self, order: Order) -> None:
-        """A worker has died at this order."""
+        """Puts back an order at which a worker process ended unexpectedly."""
         if isinstance(order, Solve):
             self.solving.appendleft(order)
         elif isinstance(order, Condense):
@@ -202,7 +202,7 @@ class _Group:
             self._keep = order
 
     def given_up(self, order: Order, reason: str) -> list[SceneRecord]:
-        """The records of scenes that cannot be computed: those of the order, or all that wait for the gears."""
+        """Records of scenes that cannot be computed: those of the order, or all that wait for the gears."""
         if isinstance(order, Solve):
             return failed(order.line, reason)
         waiting, self._is_condensing = list(self.solving), False

@@ -44,7 +44,7 @@ def solve_line(tasks: Sequence[SceneTask], gears: LoadList) -> list[SceneRecord]
 
 
 def _keep_positions(tasks: Sequence[SceneTask], gears: LoadList) -> None:
-    """Leaves solved positions in the scenes' folders, from where each excitation goes on. tasks: at ascending
+    """Archives solved positions in the scenes' folders, from which each excitation resumes. tasks: at ascending
     misalignments. Raises what `run_excitation` does."""
     first, loads = tasks[0].scene, [own_torque(task.scene) for task in tasks]
     check_positions(first)
@@ -60,7 +60,7 @@ def _keep_positions(tasks: Sequence[SceneTask], gears: LoadList) -> None:
 
 
 def _solve_missing(models: Sequence[GearModel], kept: Sequence[KeptPositions], positions: int) -> None:
-    """Solves the positions that one of the scenes has not. positions: of a pitch."""
+    """Solves the positions that are not archived for all of the scenes. positions: number in a pitch."""
     known = [each.read() for each in kept]
     missing = [number for number in range(positions) if not all(number in found for found in known)]
     angles = np.array(uniform_pitch(models[0].pair.pinion.z, positions).angles)[missing]

@@ -16,12 +16,13 @@ Answer = bytes | list[SceneRecord] | None
 
 @dataclass(frozen=True)
 class Condense:
-    """Condense the gears that scenes share, and keep them. Answer: the gears, pickled, where others need them."""
+    """Order to condense the gears that scenes share, and to hold them. Answer: the gears, pickled, where other workers
+    need them."""
 
     tasks: Line
     """All scenes that share the gears."""
     are_sent: bool
-    """Whether other workers need them."""
+    """Whether other workers need the gears."""
     deaths: int = 0
     """Worker processes that ended unexpectedly at this order."""
 
@@ -34,7 +35,7 @@ class Condense:
 
 @dataclass(frozen=True)
 class Keep:
-    """Keep gears that another worker has condensed. Answer: None."""
+    """Order to hold gears that another worker has condensed. Answer: None."""
 
     gears: bytes
     """Condensed gears, pickled."""
@@ -49,7 +50,7 @@ class Keep:
 
 @dataclass(frozen=True)
 class Solve:
-    """Compute scenes. Answer: their records."""
+    """Order to compute scenes. Answer: their records."""
 
     line: Line
     """Scenes that are computed."""
@@ -69,7 +70,7 @@ class Solve:
 
 @dataclass(frozen=True)
 class Failure:
-    """The answer to an order that has ended with an error of the program."""
+    """Answer to an order that ended with an error of the program."""
 
     reason: str
     """The error's type and message."""

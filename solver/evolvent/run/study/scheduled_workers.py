@@ -26,9 +26,9 @@ PATIENCE = 15.0
 MOST_SHOWN = 200
 """Largest number of characters of an address or a reason in a message."""
 MOST_WAITING = 1000
-"""Largest number of tasks that are with the scheduler at once: each carries its scenes."""
+"""Largest number of tasks that are submitted to the scheduler at once: each carries its scenes."""
 TOKEN = ".evolvent-study"
-"""File that workers must see in the study's folder."""
+"""Name of the file by which it is tested that workers see the study's folder."""
 
 
 @contextmanager
@@ -110,7 +110,7 @@ async def _reached(address: str) -> None:
 
 
 def _check_workers(client: Client, address: str, out: Path) -> None:
-    """Raises InputError where scenes cannot be computed."""
+    """Raises InputError where the workers cannot compute scenes."""
     with contextlib.suppress(TimeoutError):
         client.wait_for_workers(1, timeout=PATIENCE)
     threads = client.nthreads()

@@ -40,13 +40,13 @@ from evolvent_meshes.text_files import UnreadableText, read_text
 
 SCENES_STAGE = "scenes"
 INTERVAL = 10.0
-"""Time after which the table is written again while scenes are computed [s]."""
+"""Time [s] between two writings of the table while scenes are computed."""
 PICTURES = "pictures/*.png"
 Workers = Callable[[], AbstractContextManager[SceneWorkers]]
 
 
 class NothingComputed(ResultError):
-    """No scene of a study could be computed."""
+    """Error of a study of which no scene could be computed."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Study:
     """A study, ready to be computed."""
 
     file: StudyFile
-    """Study file."""
+    """Content of the study file."""
     scenes: Sequence[StudyScene]
     """Scenes in the order of the table."""
     figures: Sequence[Figure]
@@ -161,7 +161,7 @@ def _known(scene: StudyScene, out: Path) -> SceneRecord | None:
 
 
 class _Table:
-    """The table of a study as it fills. records: by the name of their scene."""
+    """Table of a study while its scenes are computed. records: by the name of their scene."""
 
     def __init__(self, study: Study, out: Path, records: Mapping[str, SceneRecord]) -> None:
         self.study, self.out, self.records = study, out, dict(records)
@@ -172,7 +172,7 @@ class _Table:
         """Number of scenes that are done, failed or refused."""
 
     def missing(self, at_once: int) -> dict[SceneTask, str]:
-        """Tasks that are to be computed, each once, with the name of the gears that they share."""
+        """Tasks that are still to be computed, each once, with the name of the gears that they share."""
         compute = self.study.file.compute
         return {
             SceneTask(each.name, scene_folder(self.out, each.name), compute, each.scene, at_once): each.gears
@@ -186,7 +186,7 @@ class _Table:
         self.done += self._counts[record.name]
 
     def write_now_and_then(self, folder: RunFolder) -> None:
-        """Writes the table where it was not for a while."""
+        """Writes the table if `INTERVAL` has passed since it was last written."""
         if time.monotonic() - self.written > INTERVAL:
             self.write(folder)
             self.written = time.monotonic()

@@ -13,12 +13,12 @@ MOST_SPEEDS = 5000
 MOST_TORQUES = 30
 """Largest number of torques of an excitation or a load list; each costs as much as a run of all positions."""
 FASTEST = 1e6
-"""Highest speed of a scene [r/min]."""
+"""Highest speed that a scene may have [r/min]."""
 SPEEDS = f"two rising numbers above 0 up to {FASTEST:g}, in r/min"
 HISTORIES = f"a list of up to 6 different speeds above 0 up to {FASTEST:g}, in r/min"
 PERCENTS = "different numbers above 0 up to 1000, 100 among them"
 MAP = 2, 12
-"""Fewest and most torques of a map."""
+"""Smallest and largest number of torques of a map."""
 MAP_RANGE = 1.0, 400.0
 """Smallest and largest torque of a map [%]."""
 MAP_PERCENTS = f"{MAP[0]} to {MAP[1]} different numbers from {MAP_RANGE[0]:g} to {MAP_RANGE[1]:g}"
@@ -32,7 +32,7 @@ Speed = Annotated[float, Field(gt=0, le=FASTEST)]
 
 
 def _inertia(gear: str) -> Any:
-    """The key of a moment of inertia."""
+    """Declares the key of a moment of inertia."""
     return key(
         f"moment of inertia of the {gear} with all that turns rigidly with it; by default that of its body, from "
         "geometry and density",

@@ -69,7 +69,7 @@ class MeshedPair:
 
     @cached_property
     def areas(self) -> Floats:
-        """(n,) of all flank nodes [mm²; mm in 2D]."""
+        """(n,) areas of all flank nodes [mm²; mm in 2D]."""
         return np.concatenate([grid.areas for grid in self.grids])
 
     def by_gear(self, depth: Floats) -> tuple[Floats, Floats]:

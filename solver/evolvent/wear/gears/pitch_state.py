@@ -1,4 +1,4 @@
-"""A pitch solved on worn flanks, and what its vibration resumes from."""
+"""A pitch solved on worn flanks, and the state from which its vibration is resumed."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Vibration:
     """State from which the vibration of a wearing pair is resumed."""
 
     state: Floats
-    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    """Coordinate s [mm] and velocity ṡ [mm/s] (2,) at phase 0."""
     forces: tuple[float, float]
     """Smallest and largest mesh force over the static one."""
     torques: tuple[float, ...]

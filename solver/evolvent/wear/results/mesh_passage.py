@@ -184,8 +184,9 @@ class PointPassage:
 
     @staticmethod
     def of(run: RunData, radius: float, count: int = 1201) -> PointPassage:
-        """At a radius [mm] of a plane pair's pinion, at `count` rotations. The pressures of neighbouring positions are
-        interpolated linearly in the rotation at the same distance from the contact line, as for wear."""
+        """Passage of the contact over a point at a radius [mm] of a plane pair's pinion, at `count` rotations. The
+        pressures of neighbouring positions are interpolated linearly in the rotation at the same distance from the
+        contact line, as for wear."""
         pair, base = run.pair, run.pair.pinion.base_radius
         ξ = roll_distance_at(pair, Member.PINION, radius)
         load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), contact_modulus(*run.scene.materials())

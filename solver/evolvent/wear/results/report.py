@@ -32,9 +32,9 @@ class GearReport:
     deepest_um: float
     """Largest worn depth between the edge margins (0.1 m_n)."""
     at_diameter_mm: float
-    """Diameter at which it is."""
+    """Diameter at which the worn depth is largest."""
     at_z_mm: float
-    """Height above mid-face at which it is."""
+    """Height above mid-face at which the worn depth is largest."""
     at_pitch_point_um: float
     """Worn depth at the pitch point, mean over the face."""
     volume_mm3: float

@@ -1,4 +1,4 @@
-"""The cases of a scene, every speed at every friction coefficient, on one kind of meshes."""
+"""Transient cases of a scene, every speed at every friction coefficient, on one kind of meshes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ MODES, STEPS = "natural modes", "mesh periods"
 KEPT = 0.4
 """Share of the machine's memory for the kept contacts of positions, beside the gears."""
 FIRST = 2
-"""Mesh periods from rest that are reported."""
+"""Number of mesh periods from rest that are reported."""
 Motion = MeshPeriods | None
 """Computed mesh periods of a case; None where it failed."""
 Found = Mapping[int, MeshPeriods | str]
@@ -75,7 +75,7 @@ class PairCases:
     comm: MPI.Comm
     """Ranks that share the cases."""
     progress: Progress
-    """Shows the cases of this rank."""
+    """Progress display of this rank's cases."""
 
     @staticmethod
     def of(
@@ -176,7 +176,7 @@ class PairCases:
         return {number: found for part in (known, *gathered) for number, found in part.items()}
 
     def _starts(self, contacts: KeptContacts) -> Callable[[int, PairTransient], PairState]:
-        """Makes the state in which a case begins. Raises NotConverged, SearchError."""
+        """Function that makes the initial state of a case. Raises NotConverged, SearchError."""
         if self._from_rest:
             return lambda _, case: start_from_rest(case.pair, self.problem, case.speed, case.friction)
         statics = quasi_static_starts(self.pair, contacts.step_angle, list(self.scene.contact.friction))
@@ -218,7 +218,8 @@ class PairCases:
 
 
 def _statics(scene: Scene, model: GearModel, kept: KeptCases, comm: MPI.Comm, progress: Progress) -> Statics:
-    """The positions without inertia, at each friction coefficient. Collective. Raises BalanceError."""
+    """Solves and archives the positions without inertia, at each friction coefficient. Collective. Raises BalanceError.
+    """
     pitch, frictions = uniform_pitch(model.pair.pinion.z, scene.sweep.positions), list(scene.contact.friction)
     progress.stage(POSITIONS, len(pitch.angles))
     solved = certified_pitch(model, pitch, frictions, comm, progress.position)

@@ -49,7 +49,7 @@ def require_possible(scene: Scene) -> None:
 
 
 def unused_keys(section: DynamicsSection) -> list[str]:
-    """A sentence where keys of [dynamics] say what a transient does not have."""
+    """A sentence on the keys of [dynamics] that the scene gives and `evolvent transient` does not use."""
     standard = DynamicsSection()
     names = [name for name in UNUSED if getattr(section, name) != getattr(standard, name)]
     if not names:
@@ -59,8 +59,8 @@ def unused_keys(section: DynamicsSection) -> list[str]:
 
 
 def prepared_folder(out: Path, resume: bool, overwrite: bool) -> list[str]:
-    """Looks at the folder, and removes the cases of an earlier call with `overwrite`. Returns a sentence where there is
-    nothing to go on from. Raises FolderError where files of others would be lost, or results unasked."""
+    """Checks the folder, and removes the cases of an earlier call with `overwrite`. Returns a sentence where there is
+    nothing to resume. Raises FolderError where files of others would be lost, or results without `overwrite`."""
     every = *WRITTEN, KEPT_CASES
     said = require_unfinished(out, every, (KEPT_STATIC, TRANSIENT.name), "cases", resume, overwrite)
     if not resume:

@@ -1,4 +1,4 @@
-"""Cases of a transient on disk: a call that was stopped goes on with those that are missing.
+"""Cases of a transient on disk: a call that was stopped resumes with those that are missing.
 
     OUT/results/transient_static.npz       the positions without inertia, at each friction coefficient
     OUT/results/transient_1500rpm_0.npz    a speed whose motion has ended, at the first friction coefficient
@@ -35,13 +35,13 @@ from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.gears.pair import GearPair
 
 COARSE, FINER_STEPS = "_coarse", "_finer"
-"""Kinds of cases: those of the companion, in the time steps of the scene and in shorter ones."""
+"""Kinds of cases of the companion: in the time steps of the scene, and in shorter ones."""
 BEGINNING = "beginning/"
 
 
 @dataclass(frozen=True)
 class Statics:
-    """A certified pitch without inertia."""
+    """Static positions of a transient: a certified pitch without inertia."""
 
     positions: tuple[tuple[PositionResult, ...], ...]
     """Results of the pitch at each friction coefficient."""
@@ -81,19 +81,19 @@ class KeptCases:
         return self.statics.read(self._name("static"), self._static)
 
     def write_static(self, static: Statics) -> None:
-        """Keeps the positions without inertia. Raises WriteError, FolderError."""
+        """Archives the positions without inertia. Raises WriteError, FolderError."""
         arrays: Arrays = {"count": len(static.positions), "deflected": static.deflected}
         for i, results in enumerate(static.positions):
             arrays |= _positions_arrays(results, f"{i}/")
         self.statics.write(self._name("static"), arrays)
 
     def read(self) -> dict[int, MeshPeriods]:
-        """Number of a case that has ended -> its motion. Raises ArchiveError."""
+        """Number of a finished case -> its mesh periods. Raises ArchiveError."""
         read = {number: self.cases.read(self._name(name), self._periods) for number, name in enumerate(self.names)}
         return {number: periods for number, periods in read.items() if periods is not None}
 
     def write(self, number: int, found: MeshPeriods) -> None:
-        """Keeps a case. Raises WriteError, FolderError."""
+        """Archives a case. Raises WriteError, FolderError."""
         arrays = _moments_arrays(found.moments, "") | _moments_arrays(found.beginning, BEGINNING) | {
             "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
             "residuals": astuple(found.residuals), "lowest_error": found.lowest_error,
@@ -125,7 +125,7 @@ class KeptCases:
 
 
 def another(path: Path) -> str:
-    """Message on a case or on statics of another scene."""
+    """Message on an archived case or on static positions of another scene."""
     return (
         f"{path}: wanted a result of this scene, found that of another one; --resume goes on with the scene and the "
         "settings that it was called with, to which lower speeds may be added, with transient.modes_per_harmonic "

@@ -33,7 +33,7 @@ def summary_lines(folder: Path) -> Iterator[str]:
 
 
 def _with_error(fact: TransientFacts, key: str, digits: int) -> str:
-    """A figure with its error bar, where it is known; empty where there is none."""
+    """A figure with its error bar as text; empty where there is none."""
     value: float | None = getattr(fact, key, None)
     if value is None or math.isnan(value):
         return ""

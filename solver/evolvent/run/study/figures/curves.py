@@ -23,7 +23,8 @@ def curves_picture(values: StudyValues, names: Sequence[str]) -> bytes:
 
 
 def curves_figure(values: StudyValues, names: Sequence[str]) -> Figure:
-    """A line a figure, with error bars where they are known. names: figures of one unit."""
+    """Figure with a line for each figure of the study, with error bars where they are known. names: figures of one
+    unit."""
     axis, unit = values.axes[0], UNITS.get(ending(names[0].partition(" (")[0]), "")
     figure = sheet(values.title, _subtitle(values, names), (9.6, 5.4))
     axes, order = figure.subplots(), np.argsort(values.points(0), kind="stable")

@@ -47,7 +47,8 @@ class DrawnAxis:
         return [text.replace("-", "−") for text in shown] if self.is_numeric else shown
 
     def said(self, number: int) -> str:
-        """Value of this number in a sentence: with its unit, or with its name where it has none."""
+        """Value of the axis with this index, as part of a sentence: with its unit, or with its name where it has none.
+        """
         unit = UNITS.get(ending(self.keys[0]), "")
         text = self.texts[number]
         return f"{text}{'' if unit == '°' else ' '}{unit}" if unit else f"{label(self.keys[0])} {text}"
@@ -55,7 +56,7 @@ class DrawnAxis:
 
 @dataclass(frozen=True)
 class StudyValues:
-    """The table of a study, as pictures need it."""
+    """Table of a study for pictures."""
 
     title: str
     """Title of the study."""
@@ -75,7 +76,7 @@ class StudyValues:
 
     @property
     def figures(self) -> list[str]:
-        """Columns that are no error bars."""
+        """Names of the columns that are no error bars."""
         bars = {_error_name(name) for name in self.columns}
         return [name for name in self.columns if name not in bars]
 
@@ -97,7 +98,7 @@ class StudyValues:
         return self.of(_error_name(name))
 
     def points(self, axis: int) -> Ints:
-        """(n,) numbers of the values of an axis at which the scenes stand."""
+        """(n,) index of the value of an axis that each scene has."""
         known = {repr(written(value)): number for number, value in enumerate(self.axes[axis].values)}
         first = self.axes[axis].keys[0]
         return np.array([known[repr(written(row.parameters[first]))] for row in self.rows])

@@ -1,4 +1,4 @@
-"""Which scenes of a study have the same condensed gears.
+"""Scenes of a study that share condensed gears.
 
 The compliance of gears depends neither on friction nor on misalignment, and on the torque by their meshes only, which
 may serve a range of torques.
@@ -24,7 +24,7 @@ from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
 
 SHARING: tuple[Computation, ...] = ("run", "excitation", "dynamics", "strength")
-"""Computations whose scenes can share gears. Wear has flanks of its own."""
+"""Computations whose scenes can share gears. Scenes with wear have flanks of their own."""
 
 
 def meshes(scene: Scene, compute: Computation) -> tuple[Mesher, ...]:
@@ -40,15 +40,15 @@ def own_torque(scene: Scene) -> SceneTorques:
 
 
 def condensed_problem(scene: Scene, compute: Computation) -> GearProblem:
-    """The problem whose gears a computation condenses. Raises SceneError."""
+    """Gear problem that a computation of the scene condenses. Raises SceneError."""
     if compute == "dynamics":
         return scene_torques(scene, (scene.dynamics or DynamicsSection()).torque_percents).problem
     return gear_problem(scene)
 
 
 def on_shared_meshes(scenes: Sequence[Scene], compute: Computation) -> list[Scene]:
-    """The scenes on meshes that serve all torques under which the same gears stand among them; those of an excitation
-    are sized for the heaviest one, as `evolvent.run.dynamics.scene_torques` says why."""
+    """The scenes, those with the same gears on meshes that serve all of their torques. Those of an excitation are sized
+    for the heaviest one, for the reason in `evolvent.run.dynamics.scene_torques`."""
     if compute not in SHARING or compute == "dynamics":  # which has meshes for a range of torques of its own
         return list(scenes)
     torques: dict[str, set[float]] = defaultdict(set)

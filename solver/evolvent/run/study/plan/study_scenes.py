@@ -19,9 +19,9 @@ from evolvent.scene.scene_text import apply_override, nested_values, scene_text
 from evolvent.scene.schema.errors import InputProblem, shown
 
 NAME = 16
-"""Digits of a scene's name."""
+"""Number of digits of a scene's name."""
 NOT_DRAWN = {"pictures": False, "animation": False, "fields": False}
-"""Output that scenes of a study leave out unless the study sets it."""
+"""Keys of [output] that scenes of a study leave out unless the study sets them."""
 Values = dict[str, Any]
 
 
@@ -104,7 +104,7 @@ def _put(values: Values, name: str, value: Any, folder: Path) -> None:
 
 
 def _take_out(values: Values, name: str) -> None:
-    """Removes a dotted key, where it is there."""
+    """Removes a dotted key, if it is given."""
     *sections, last = name.split(".")
     for section in sections:
         values = values.get(section, {})
@@ -124,7 +124,7 @@ def _sharing(scenes: Sequence[StudyScene], compute: Computation) -> list[StudySc
 
 
 def _name(each: StudyScene, study: StudyFile, version: str) -> str:
-    """Digits of a SHA-256. Excitations may share the search of their positions, which is not exact."""
+    """Name of a scene: digits of a SHA-256. Excitations may share the search of their positions, which is not exact."""
     content: list[Any]
     shared = study.compute == "excitation" and study.share_gears
     if each.scene is None:

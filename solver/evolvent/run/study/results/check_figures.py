@@ -1,4 +1,4 @@
-"""Figures of a scene that `check` gives without computing it: geometry, load and size."""
+"""Figures of a scene that `check` of a study gives without computing it: geometry, load and size."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ REPORT = "check.txt"
 
 @dataclass(frozen=True)
 class CheckFigures:
-    """check.json: what follows from a scene before it is computed."""
+    """check.json: figures of a scene that are known before it is computed."""
 
     centre_distance_mm: float
     """Centre distance a."""

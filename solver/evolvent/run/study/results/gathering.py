@@ -72,7 +72,7 @@ class Gathering:
         return bool(self._rows(figure.file, figure.rows))
 
     def why_missing(self, figure: Figure) -> str:
-        """Why a figure has no value here, for a reader; empty where its cell is left empty by the computation."""
+        """Reason why a figure has no value here; empty where the computation leaves its cell empty."""
         read = self._rows(figure.file, figure.rows)
         rows = [row for group in self._by_friction(figure).values() for row in group]
         if not read:
@@ -87,7 +87,7 @@ class Gathering:
         return ""
 
     def _by_friction(self, figure: Figure) -> dict[str, list[Row]]:
-        """The rows of a figure; those of different friction coefficients apart. At least one group."""
+        """Rows of a figure in groups, one for each friction coefficient; at least one group."""
         groups: dict[str, list[Row]] = {}
         for row in self._rows(figure.file, figure.rows):
             if all(_same(_deep(row, name), value) for name, value in figure.where.items()):
@@ -117,7 +117,7 @@ def _read(folder: Path, name: str, rows: str) -> list[Row]:
 
 
 def _deep(row: Any, dotted: str) -> Any:
-    """The value of a dotted key; None where it is not there."""
+    """Value of a dotted key in a row; None where it is missing."""
     if isinstance(row, Mapping) and dotted in row:
         return row[dotted]
     for part in dotted.split("."):
@@ -145,7 +145,7 @@ def _same(found: Any, wanted: str | int | float) -> bool:
 
 
 def _number(value: Any) -> float:
-    """NaN where the value is no finite number."""
+    """A value as a number; NaN where it is no finite number."""
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):

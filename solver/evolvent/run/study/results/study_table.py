@@ -1,4 +1,4 @@
-"""The table of a study: a row a scene, with its parameters, the gathered figures, and what became of it."""
+"""Table of a study: a row for each scene, with its parameters, gathered figures and status."""
 
 from __future__ import annotations
 
@@ -27,14 +27,16 @@ WRITERS = "pandas", "pyarrow"
 
 @dataclass(frozen=True)
 class TableRow:
-    """A row of study.csv: first the parameters, each by its key, then the figures, then what follows here."""
+    """A row of study.csv: first the parameters, each by its key, then the figures, then status, reason, folder and
+    time."""
 
     parameters: Mapping[str, Any]
     """Key of the scene -> value."""
     figures: Mapping[str, float]
     """Figure -> value, NaN where the scene has none; with error bars in a column `..._error` behind it."""
     status: str
-    """done; failed: the computation ended with an error; refused: the values are no scene; waiting: to come."""
+    """Status of the scene. done; failed: the computation ended with an error; refused: the values are no valid scene;
+    waiting: not computed yet."""
     reason: str
     """Why a scene failed or was refused."""
     folder: str

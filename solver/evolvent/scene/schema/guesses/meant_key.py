@@ -1,4 +1,4 @@
-"""Guesses what was meant by an unknown key or section: by tables of words, by its spelling, by its name elsewhere."""
+"""Suggestions for an unknown key or section: by tables of words, by its spelling, by its name elsewhere."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from evolvent.scene.schema.guesses.terms import Meant, meant_by
 from evolvent.scene.schema.guesses.units import are_of_one_quantity, stem_of
 
 KEY_TERMS = {"scene": (*GEAR_TERMS, *OTHER_TERMS), "study": STUDY_TERMS}
-"""Kind of file -> words for keys."""
+"""Kind of file -> terms for its keys."""
 DEEP = 2
-"""Dots of keys that are not looked for elsewhere: those of gauges and of the materials of single gears."""
+"""Number of dots of keys that are not suggested in other sections: those of gauges and of the materials of single
+gears."""
 
 
 def meant_key(name: str, section: str, here: Collection[str], everywhere: Collection[str], kind: str) -> Meant | None:

@@ -1,4 +1,4 @@
-"""Guesses what was meant by a line that is no TOML: numbers and texts as they are written elsewhere."""
+"""Suggestions for a line that is no TOML: numbers and texts as they are written elsewhere."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ QUOTED = re.compile(r"\"(?:\\.|[^\"\\])*\"|'[^']*'")
 
 @dataclass(frozen=True)
 class WrittenOtherwise:
-    """The error of a text that is no TOML, and how TOML writes it."""
+    """Error in a text that is no TOML, and its form in TOML."""
 
     found: str
     """Part of the text that is no TOML, and its description."""
@@ -69,7 +69,7 @@ HABITS: tuple[_Habit, ...] = (
 
 
 def written_otherwise(line: str) -> WrittenOtherwise | None:
-    """The error of a line `key = value` that is no TOML, with a remedy; None where it is not known."""
+    """Error in a line `key = value` that is no TOML, with a remedy; None where it is not known."""
     _, equals, value = line.partition("=")
     if not equals:
         yaml = re.fullmatch(r"\s*[\w.-]+\s*:\s.*", line)
@@ -78,8 +78,8 @@ def written_otherwise(line: str) -> WrittenOtherwise | None:
 
 
 def value_written_otherwise(value: str) -> WrittenOtherwise | None:
-    """The error of a value that is no TOML, with a remedy; None where it is not known, is TOML or has control
-    characters."""
+    """Error in a value that is no TOML, with a remedy; None where it is not known, is TOML or has control characters.
+    """
     if _is_toml(value) or CONTROL.search(value):
         return None
     plain = QUOTED.sub('""', value).partition("#")[0]

@@ -1,4 +1,4 @@
-"""Guesses the value that was meant by one of the wrong type or spelling: 20 by 20.0 or "20", "quick" by "Quick"."""
+"""Suggestions for a value of the wrong type or spelling: 20 for 20.0 or "20", "quick" for "Quick"."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from evolvent.scene.schema.guesses.value_words import values_meant
 ALIKE = 0.75
 """Least similarity of a misspelled word to one that is allowed (difflib's ratio)."""
 LONGEST = 60
-"""Longest text that is tried [characters]."""
+"""Longest text for which a value is suggested [characters]."""
 STRICT = ConfigDict(strict=True, allow_inf_nan=False)
 
 
@@ -64,7 +64,7 @@ def _choices(annotation: Any) -> list[str]:
 
 
 def _near(value: Any) -> Iterator[Any]:
-    """Values that may be meant by a value."""
+    """Values that may be meant by a given value."""
     if isinstance(value, float) and value.is_integer():
         yield int(value)
     elif isinstance(value, list) and len(value) == 1:

@@ -1,4 +1,4 @@
-"""Units at the ends of keys, and what converts a value from one to another."""
+"""Units at the ends of keys, and the conversion of a value from one to another."""
 
 from __future__ import annotations
 

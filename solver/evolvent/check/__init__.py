@@ -1,1 +1,1 @@
-"""What is reported of a scene before it is computed."""
+"""Reports on a scene before it is computed."""

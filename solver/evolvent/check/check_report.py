@@ -56,7 +56,7 @@ def overview(scene: Scene) -> str:
 
 
 def _skip_lines(scene: Scene) -> str:
-    """What the run leaves out, and what it computes the long way."""
+    """Lines on the parts of the run that are skipped, and on those that are computed in full."""
     left_out = skipped(scene)
     column = 2 + max((len(skip.name) for skip in left_out), default=0)
     lines = ["Skipped", *(f"  {skip.name:<{column}}{skip.sentence}" for skip in left_out)]
@@ -108,7 +108,7 @@ def _gear_rows(pair: GearPair) -> list[Row]:
 
 
 def _modification_rows(pair: GearPair) -> list[Row]:
-    """Tip relief and lead crowning, and what else the flank of either gear has."""
+    """Rows on tip relief and lead crowning, and on the other modifications that the flank of either gear has."""
     each = [gear.modifications for gear in pair.gears]
     shown = {"tip_relief_um", "lead_crowning_um"}.union(*(given.amounts for given in each))
     return [
@@ -181,7 +181,7 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
 
 
 def _operating_rows(scene: Scene) -> list[Row]:
-    """The speed under whose mesh force contact is computed."""
+    """Row on the speed under whose mesh force contact is computed; none where the load is a torque."""
     dynamics = scene.dynamics
     if dynamics is None or dynamics.operating_rpm is None:
         return []
@@ -222,7 +222,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
 
 
 def _room_line(scene: Scene) -> str:
-    """Why `run` would refuse the scene; empty where it would not."""
+    """Message on a scene that needs more memory than the machine has; empty where it fits."""
     problem = room_problem(scene, memory_megabytes)
     return "" if problem is None else f"\n\nToo large for this machine\n  {problem}"
 

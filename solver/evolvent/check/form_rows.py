@@ -1,4 +1,4 @@
-"""What `evolvent check` tells of a tooth form that is not that of the basic rack alone."""
+"""Rows of `evolvent check` on tooth forms that differ from that of the basic rack alone."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ Line = tuple[str, str, str, tuple[str, ...]]
 
 
 def gear_lines(pair: GearPair) -> list[Line]:
-    """Of each gear, where one of the two has the input from which they follow."""
+    """Lines on the tooth form and body of both gears, each where one of the gears has the input that it follows from.
+    """
     return [*_tip_edge(pair), *_protuberance(pair), *_thickness(pair), *_web(pair), *_support(pair)]
 
 
 def pair_lines(pair: GearPair) -> list[Line]:
-    """Of the pair."""
+    """Line on the circumferential backlash; none where no tooth thickness allowance is given."""
     if not any(gear.tooth_thickness_allowance_um for gear in pair.gears):
         return []
     return [("circumferential backlash", "j_wt", "µm", (fixed(1e3 * pair.circumferential_backlash, 2),))]
@@ -51,7 +52,7 @@ def _tip_edge(pair: GearPair) -> list[Line]:
 
 
 def _tip_land(gear: GearParameters) -> float:
-    """Normal width of what is left of the tip circle [mm]: s_an of a sharp tip."""
+    """Normal width of the tip land that remains [mm]: s_an of a sharp tip."""
     whole, edge = gear.normal_thickness(gear.tip_diameter), gear.tip_edge
     return whole if edge is None else whole * edge.end[1] / gear.half_angle(gear.tip_diameter)
 

@@ -16,7 +16,7 @@ POSITION_PER_DOF, POSITION_PER_LEVEL = 2.46e-3, 2250.0
 """Memory [MB] of corrections and of a position on two ranks: per degree of freedom of both finest flanks, and for each
 level after the first."""
 SHARED, OWN = 0.2, 0.4
-"""Shares of it that all ranks have together, and that each has."""
+"""Shares of the memory of positions on two ranks: that of all ranks together, and that of each rank."""
 PATCH_PER_NODE = {False: 1.25, True: 1.73}
 """Memory [MB] of condensing a patch per node of its flank, without and with the functionals of Nitsche's method, which
 the finest level of the pinion has."""
@@ -26,8 +26,8 @@ these (`evolvent.gears.two_level.towers.Axis`)."""
 
 
 def levels_megabytes(sectors: Sequence[LevelledSector], ranks: int) -> float:
-    """Memory [MB] of what is beside the elimination of the sectors of pinion and wheel, on so many ranks of one
-    machine: both compliances with the largest patch, of both gears on several ranks, or with what positions need."""
+    """Memory [MB] beside the elimination of the sectors of pinion and wheel, on so many ranks of one machine: both
+    compliances with the largest patch, of both gears on several ranks, or with the memory of positions."""
     sizes = [LevelledSize.of(sector) for sector in sectors]
     pinion, wheel = (_patch_megabytes(sector, member) for sector, member in zip(sectors, Member))
     patches = max(pinion, wheel) if ranks == 1 else pinion + wheel
@@ -37,12 +37,12 @@ def levels_megabytes(sectors: Sequence[LevelledSector], ranks: int) -> float:
 
 
 def _compliance_megabytes(size: LevelledSize) -> float:
-    """Of a coarse sector's flank."""
+    """Memory [MB] of the compliance of a coarse sector's flank."""
     return 8e-6 * size.sector.flank**2
 
 
 def _patch_megabytes(sector: LevelledSector, member: Member) -> float:
-    """Of the largest patch of a gear."""
+    """Memory [MB] of the largest patch of a gear."""
     last = len(sector.levels) - 1
     return max(
         PATCH_PER_NODE[member is Member.PINION and number == last] * nodes
@@ -51,7 +51,7 @@ def _patch_megabytes(sector: LevelledSector, member: Member) -> float:
 
 
 def _patch_nodes(sector: LevelledSector) -> list[int]:
-    """Nodes of the flank of each level's largest patch."""
+    """Number of flank nodes of the largest patch of each level."""
     rows, layers, found = sector.coarse.profile_elements, sector.coarse.face_elements, []
     for level in sector.levels:
         here = rows if rows <= WHOLE_PROFILE else PATCH_ROWS

@@ -1,4 +1,5 @@
-"""What [dynamics] and [transient] will compute: motions, natural modes, time steps, and the time of the speeds."""
+"""Estimated size of [dynamics] and [transient]: motions, natural modes, time steps, and processor time of the speeds.
+"""
 
 from __future__ import annotations
 
@@ -20,11 +21,11 @@ speeds from 10 to 60,000 r/min, at damping ratios of 0.03 and more."""
 MOST_MODES = 3000
 """Natural modes of a gear: those of He's pinion up to 100 kHz, a hundred, take 10 s of processor time."""
 SWEEPS = 4
-"""Of all speeds with error bars: three of them on other excitations."""
+"""Sweeps over all speeds with error bars: one of the pair, three on other excitations."""
 RESOLVED = 0.25
 """Frequency up to which natural modes are computed over that of time steps."""
 STEPS = 1, 1, 4
-"""Time steps of a motion, of the same one on coarser gears and of that in shorter steps, over those of the motion."""
+"""Time steps of a motion, of the motion on coarser gears and of that in shorter steps, over those of the motion."""
 
 
 def speeds_time(natural: float, section: DynamicsSection, error_bars: bool) -> float:
@@ -38,7 +39,7 @@ def speeds_time(natural: float, section: DynamicsSection, error_bars: bool) -> f
 
 
 def shown_time(seconds: float) -> str:
-    """In seconds, minutes or hours, to one digit."""
+    """A time in seconds, minutes or hours, to one digit."""
     for unit, size in (("h", 3600.0), ("min", 60.0)):
         if seconds >= size:
             return f"{float(f'{seconds / size:.1g}'):g} {unit}"
@@ -46,7 +47,7 @@ def shown_time(seconds: float) -> str:
 
 
 def natural_modes(scene: Scene, section: TransientSection) -> tuple[float, ...]:
-    """Of pinion and wheel, to a third where they are those up to a frequency."""
+    """Number of natural modes of pinion and wheel; to a third where all modes up to a frequency are wanted."""
     problem, density = gear_problem(scene), (scene.dynamics or DynamicsSection()).density_kg_m3
     if section.modes_per_harmonic is not None:
         return tuple(float(section.modes_per_harmonic * gear.z) for gear in problem.pair.gears)
@@ -59,7 +60,7 @@ def natural_modes(scene: Scene, section: TransientSection) -> tuple[float, ...]:
 
 
 def too_many_modes(scene: Scene, section: TransientSection) -> InputProblem | None:
-    """Why a transient would compute natural modes for hours; None where it would not."""
+    """Problem of a transient that would compute natural modes for hours; None where it would not."""
     if section.modes_per_harmonic is not None or max(modes := natural_modes(scene, section)) <= MOST_MODES:
         return None
     found = f"{shown(section.speeds_rpm)} in {scene.sweep.positions} positions: about {max(modes):,.0f} modes of a gear"
@@ -69,5 +70,5 @@ def too_many_modes(scene: Scene, section: TransientSection) -> InputProblem | No
 
 
 def most_time_steps(section: TransientSection, motions: int, positions: int, error_bars: bool) -> int:
-    """Of all motions, if none becomes steady before its last mesh period; undivided ones."""
+    """Number of undivided time steps of all motions if none becomes steady before its last mesh period."""
     return sum(STEPS[: 3 if error_bars else 1]) * motions * section.mesh_periods * positions

@@ -1,4 +1,4 @@
-"""What `evolvent check` tells of the sections that commands beyond `evolvent run` read: [dynamics], [transient] and
+"""Tables of `evolvent check` on the sections that commands beyond `evolvent run` read: [dynamics], [transient] and
 [fatigue]. Each table stands where the scene has its section."""
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from evolvent.strength.fatigue.criterion import criteria_of
 
 
 def planned_tables(scene: Scene) -> list[str]:
-    """One for each of the sections that the scene has."""
+    """Tables on the sections [dynamics], [transient] and [fatigue], one for each that the scene has."""
     return [*_vibration(scene), *_transient(scene), *_fatigue(scene)]
 
 
@@ -36,7 +36,7 @@ def _transient(scene: Scene) -> list[str]:
 
 
 def _fatigue(scene: Scene) -> list[str]:
-    """The criteria and how many depths they are evaluated at, in one line."""
+    """Line on the criteria of [fatigue] and the number of depths at which they are evaluated."""
     if scene.fatigue is None:
         return []
     names = ", ".join(criterion.words for criterion in criteria_of(scene.fatigue.yield_stress_MPa))

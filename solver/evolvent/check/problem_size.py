@@ -39,7 +39,8 @@ MOST_MODES, SQUARES_PER_TOOTH = 300, 6
 """Modes that couple the teeth of a ring (200 in Yang's pair at quick), and square matrices of this size for each tooth
 (`evolvent.gears.ring.ring_modes`): negligible but for hundreds of teeth where far ones are not skipped."""
 NUMBERS_KEPT = 6
-"""Numbers kept of a position's result, over the degrees of freedom of the pinion's loaded flank: 3 in 2D, 5 in 3D."""
+"""Archived numbers of a position's result, over the degrees of freedom of the pinion's loaded flank: 3 in 2D, 5 in 3D.
+"""
 MEGABYTES_PER_MESHED_DOF = 6e-4
 """Memory of `evolvent mesh`, which keeps both sectors and checks their cells: of tetrahedra; hexahedra need 4e-4."""
 MemoryEstimate = Callable[[Scene, int], float]
@@ -71,7 +72,8 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
 
 
 def strength_megabytes(scene: Scene, ranks: int = 1) -> float:
-    """Largest memory [MB] of root stress, whose sectors have finer roots than a run's, which are condensed, too."""
+    """Largest memory [MB] of `evolvent strength`. Its sectors have finer roots than those of a run, and condense them,
+    too."""
     problem, times = gear_problem(scene), (scene.strength or StrengthSection()).root_refinement
     pinion, wheel = (_with_roots(problem, member, times) for member in Member)
     return _condensing_megabytes(scene, ranks, (pinion, wheel)) + results_megabytes(scene)
@@ -87,7 +89,7 @@ def _with_roots(problem: GearProblem, member: Member, times: int) -> SectorSize:
 
 
 def _condensing_megabytes(scene: Scene, ranks: int, sizes: tuple[SectorSize, SectorSize]) -> float:
-    """Of a scene whose bodies have these sizes. One rank holds one gear's elimination beside the other gear's
+    """Memory [MB] of condensing bodies of these sizes. One rank holds one gear's elimination beside the other gear's
     compliance, several ranks both eliminations at once."""
     problem, (pinion, _) = gear_problem(scene), sizes
     dimension = 2 if problem.is_plane else 3
@@ -126,11 +128,11 @@ def mesh_megabytes(scene: Scene, ranks: int = 1) -> float:
 MEMORY_OF: Mapping[str, MemoryEstimate] = MappingProxyType(
     {"run": memory_megabytes, "mesh": mesh_megabytes, "strength": strength_megabytes}
 )
-"""Estimate of a command; commands that condense a run's meshes have a run's."""
+"""Command -> estimate of its memory; commands that condense a run's meshes have a run's."""
 
 
 def _factored_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
-    """Sizes of what is eliminated for (pinion, wheel): a sector, or the whole gear."""
+    """Sizes of the bodies that are eliminated for (pinion, wheel): a sector, or the whole gear."""
     problem, (pinion, wheel) = gear_problem(scene), sector_sizes(scene)
     if not problem.options.whole_gears:
         return pinion, wheel

@@ -1,4 +1,4 @@
-"""A table of what `evolvent check` prints."""
+"""Tables of `evolvent check` as text."""
 
 from __future__ import annotations
 

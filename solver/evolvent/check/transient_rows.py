@@ -1,5 +1,5 @@
-"""What `evolvent check` tells of the section [transient]: how many motions are computed, in which time steps, and
-whether these resolve the pair's own vibration, whose frequency is ISO's: that of the computed mesh is not known yet."""
+"""Rows of `evolvent check` on [transient]: number of motions and time steps, and whether the steps resolve the natural
+frequency of the pair. This frequency is that of ISO 6336-1: that of the computed mesh is not known yet."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ BY_ISO = "by c_γα of ISO 6336-1"
 
 @dataclass(frozen=True)
 class PlannedSteps:
-    """The time steps of a speed."""
+    """Time steps of a transient at one speed."""
 
     speed: float
-    """Of the pinion [r/min]."""
+    """Speed of the pinion [r/min]."""
     mesh_frequency: float
-    """f_z [Hz]."""
+    """Mesh frequency f_z [Hz]."""
     length: float
-    """Of a step [s], undivided."""
+    """Length of an undivided time step [s]."""
     a_period: float
-    """Steps in a period of the pair's own vibration."""
+    """Time steps in a natural period of the pair."""
 
 
 def transient_lines(scene: Scene, section: TransientSection, companion: bool) -> list[Line]:
-    """Of a scene with the section. companion: whether error bars are asked for."""
+    """Lines on the motions and time steps of a scene with [transient]. companion: whether error bars are asked for."""
     cases, positions = len(section.speeds_rpm) * len(scene.contact.friction), scene.sweep.positions
     steps, divided = str(positions), section.tolerance is not None
     modes = " and ".join(f"{float(f'{count:.2g}'):.0f}" for count in natural_modes(scene, section))
@@ -59,7 +59,7 @@ def transient_lines(scene: Scene, section: TransientSection, companion: bool) ->
 
 
 def step_lines(scene: Scene, section: TransientSection) -> list[Line]:
-    """A line a speed."""
+    """Lines on the time steps, one for each speed."""
     return [
         (f"{each.speed:g} r/min", "", "", (
             f"{each.mesh_frequency:.4g}", f"{1e6 * each.length:.4g}", f"{each.a_period:.3g}"))
@@ -68,8 +68,8 @@ def step_lines(scene: Scene, section: TransientSection) -> list[Line]:
 
 
 def transient_warnings(scene: Scene) -> list[str]:
-    """On a backlash that nobody has named, and on speeds at which equal steps do not resolve the pair's own vibration;
-    none of these where a tolerance divides steps."""
+    """Warnings of an unknown backlash, and of speeds at which equal time steps do not resolve the natural frequency of
+    the pair; none of the latter where a tolerance divides steps."""
     section = scene.transient
     if section is None:
         return []
@@ -85,7 +85,7 @@ def transient_warnings(scene: Scene) -> list[str]:
 
 
 def _without_backlash(scene: Scene, section: TransientSection) -> list[str]:
-    """What becomes of flanks that part where nobody has named a backlash."""
+    """Warning that a transient fails where flanks separate and the scene gives no backlash; none where it does."""
     given = None if scene.dynamics is None else scene.dynamics.backlash_um
     if (problem := unnamed_backlash(scene.gear_pair(), given)) is None:
         return []
@@ -94,7 +94,7 @@ def _without_backlash(scene: Scene, section: TransientSection) -> list[str]:
 
 
 def planned_steps(scene: Scene, section: TransientSection) -> list[PlannedSteps]:
-    """At each speed."""
+    """The time steps at each speed."""
     natural, teeth = natural_frequency(scene, section), scene.gear_pair().pinion.z
     planned = []
     for speed in section.speeds_rpm:
@@ -105,8 +105,8 @@ def planned_steps(scene: Scene, section: TransientSection) -> list[PlannedSteps]
 
 
 def natural_frequency(scene: Scene, section: TransientSection) -> float:
-    """f_n [Hz] of the gears on c_γα of ISO 6336-1, with the inertia that swings: of both gears, or of the one with the
-    torque."""
+    """Natural frequency f_n [Hz] of the gears on c_γα of ISO 6336-1, with the inertia that swings: of both gears, or of
+    the one with the torque."""
     problem = gear_problem(scene)
     pair, force = problem.pair, problem.torque / problem.pair.gears[problem.torque_on].base_radius
     moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
@@ -115,7 +115,7 @@ def natural_frequency(scene: Scene, section: TransientSection) -> float:
 
 
 def _swinging_mass(scene: Scene, section: TransientSection, problem: GearProblem) -> float:
-    """Along the line of action [t]."""
+    """Equivalent mass along the line of action [t] of the inertia that swings."""
     inertias = moments_of_inertia(problem.pair, scene.dynamics or DynamicsSection())
     if section.drive == "free":
         return equivalent_mass(problem.pair, inertias)

@@ -1,5 +1,4 @@
-"""What `evolvent check` tells of the section [dynamics]: inertia, backlash and the room for it, and the size of the
-calls."""
+"""Rows of `evolvent check` on [dynamics]: inertia, backlash and its limit, and the numbers of speeds and motions."""
 
 from __future__ import annotations
 
@@ -21,7 +20,7 @@ WITH_OTHERS = "with those on other excitations, for error bars"
 
 
 def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
-    """Of a scene with the section."""
+    """Lines on the inertia, damping, backlash and speeds of a scene with [dynamics]."""
     problem, count = gear_problem(scene), scene.sweep.positions
     settings = drive_settings(problem.pair, section)
     mass = equivalent_mass(problem.pair, settings.inertias)
@@ -48,5 +47,5 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
 
 
 def vibration_warnings(scene: Scene) -> list[str]:
-    """Why `evolvent dynamics` would refuse a scene with the section; none where it would not."""
+    """Reasons why `evolvent dynamics` would refuse a scene with [dynamics]; none where it would not."""
     return [f"`evolvent dynamics` would refuse this scene: {why}." for why in refusals(scene)]

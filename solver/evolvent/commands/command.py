@@ -13,7 +13,7 @@ class Command:
     name: str
     """The first word of the command line."""
     function: Callable[..., None]
-    """Its parameters are those of the command line, its docstring is the help."""
+    """Function of the command. Its parameters are those of the command line, its docstring is the help."""
     epilog: str
     """The end of the help: examples and exit statuses."""
     parallel: bool = False

@@ -46,15 +46,15 @@ PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"
 
 @dataclass(frozen=True)
 class Call:
-    """A command line that was read."""
+    """Scene and options of a command line."""
 
     scene: Scene
-    """With --level, --set and --no-skip."""
+    """Scene with --level, --set and --no-skip."""
     source: Path
-    """The scene's file."""
+    """Path of the scene file."""
     out: Path
     percents: Sequence[float]
-    """Torques in percent of the scene's."""
+    """Torques in percent of the scene's torque."""
     force: bool
     resume: bool
     overwrite: bool
@@ -67,16 +67,16 @@ class Call:
 
 @dataclass(frozen=True)
 class Finished:
-    """A scene that was computed."""
+    """Outcome of computing a scene."""
 
     warnings: Sequence[str] = ()
-    """Sentences to be read."""
+    """Warnings on the results, a sentence each."""
     lines: Callable[[], Iterable[str]] = tuple
     """Figures for rank 0 to print, unless --quiet is given."""
 
 
 Compute = Callable[[Call], Finished]
-"""Computes a scene. Collective."""
+"""Function that computes a scene. Collective."""
 
 
 def _run(call: Call) -> Finished:

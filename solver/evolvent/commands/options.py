@@ -16,17 +16,17 @@ from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.output import SKIP_NAMES
 
 MOST_DIGITS, MOST_SHOWN = 9, 40
-"""Digits of a number of worker processes; characters of one that is none in a message."""
+"""Largest number of digits of a number of worker processes, and of characters of an invalid one in a message."""
 MOST_PERCENT = 1000.0
 """Largest part of a scene's torque in a load list."""
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
-"""What typer raises for an option or argument that it cannot use. Typer has no public name for this class."""
+"""Exception of typer for an option or argument that it cannot use. Typer has no public name for this class."""
 EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh", "FILE.png": "teeth.png"}
-"""What --out takes, as in the help -> an example."""
+"""Placeholder of the argument of --out in the help -> an example."""
 
 
 def usage_message(error: Any) -> str:
-    """What was wanted and found of a `UsageError`; the help where the command line is empty."""
+    """Message of a `UsageError` with found, allowed and remedy; the help where the command line is empty."""
     context = getattr(error, "ctx", None)
     is_help = context is not None and error.message == context.get_help()
     if is_help or "; allowed: " in error.message:

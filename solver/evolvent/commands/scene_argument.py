@@ -78,6 +78,6 @@ def unworn(scene: Scene) -> Scene:
 
 
 def warn(sentences: Sequence[str]) -> None:
-    """Prints what a command has returned to be read."""
+    """Prints the warnings that a command has returned."""
     for sentence in sentences:
         typer.echo(f"evolvent: warning: {sentence}", err=True)

@@ -40,9 +40,9 @@ class EngagementPeak:
     pressure: float
     """Peak pressure [MPa]."""
     at_zone_end: bool
-    """Whether it lies at the limit of a tip-edge zone, beyond which the pressure may rise further."""
+    """Whether the peak lies at the limit of a tip-edge zone, beyond which the pressure may rise further."""
     tooth: int
-    """Index of the tooth pair, within the pitch, on which it occurs."""
+    """Index of the tooth pair, within the pitch, on which the peak occurs."""
 
 
 UNKNOWN_PEAK = EngagementPeak(float("nan"), float("nan"), False, 0)
@@ -70,7 +70,7 @@ class Engagement:
     kink_pressure: Floats
     """(n,) largest peak pressure over the start of a linear relief [MPa]; NaN where the contact covers none."""
     at_zone_end: Bools
-    """(n,) bool, whether that pressure lies at the limit of a tip-edge zone."""
+    """(n,) bool, whether the largest peak pressure lies at the limit of a tip-edge zone."""
     mean_pressure: Floats
     """(n,) mean peak pressure along the contact line [MPa], see `line_mean`, over the starts of reliefs too; NaN where
     no part of the line lies between the tip-edge zones."""

@@ -86,7 +86,7 @@ def face_load(run: RunData, index: int) -> FaceLoad:
 
 
 def _starts(shares: Floats) -> Ints:
-    """Numbers (m,) of the layers with which the m ones begin that are left where short parts at both ends of the common
+    """Indices (m,) of the layers with which the m layers begin that remain where short parts at both ends of the common
     face join the next layer. shares: (l,) part of each layer on the common face."""
     long = np.flatnonzero(shares >= LEAST_SHARE)
     return np.concatenate([[0], long[1:]]) if len(long) else np.zeros(1, dtype=np.int64)

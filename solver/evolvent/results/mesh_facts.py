@@ -11,7 +11,7 @@ from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.results.run_data import RunData
 
 NARROW = 0.1
-"""Quantile of all slices that `cells_across_narrow_contact` is."""
+"""Quantile of all slices that `cells_across_narrow_contact` gives."""
 
 
 @dataclass(frozen=True)

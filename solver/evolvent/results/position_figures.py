@@ -9,12 +9,12 @@ from evolvent.scene.scene import GEARS
 
 
 def transmission_error_um(_: RunData, solved: SolvedPosition) -> float:
-    """r_b1 φ_1 − r_b2 φ_2 [µm]."""
+    """Transmission error r_b1 φ_1 − r_b2 φ_2 [µm]."""
     return 1e3 * solved.result.transmission_error
 
 
 def loss_percent(_: RunData, solved: SolvedPosition) -> float:
-    """Friction power of the input power [%]."""
+    """Friction power over input power [%]."""
     return 100.0 * solved.result.friction_loss / solved.result.torques[0]
 
 
@@ -27,7 +27,8 @@ def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
 
 
 def secant_stiffness(run: RunData, solved: SolvedPosition) -> float:
-    """T_1/(r_b1 b) over the transmission error [N/(mm·µm)]; modifications of the flanks count as deflection.
+    """Secant stiffness T_1/(r_b1 b) over the transmission error [N/(mm·µm)]; modifications of the flanks count as
+    deflection. NaN where a flank has a chart: which part of the transmission error is missing material is not known.
 
     NaN where a flank has a chart: which part of the transmission error is missing material is not known.
     """

@@ -30,7 +30,7 @@ class ReliefKink:
     """Contact pressure where a linear tip or root relief begins."""
 
     relief: str
-    """Tip relief or root relief."""
+    """Kind of the relief: tip or root."""
     roll_distance: float
     """Roll distance ξ of the kink from the pitch point [mm]."""
     hertz: float

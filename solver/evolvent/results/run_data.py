@@ -29,18 +29,18 @@ class FlankNodes:
     """Nodes of the loaded flank of a gear's tooth 0."""
 
     gear: GearParameters
-    """The gear."""
+    """Pinion or wheel."""
     points: Floats
     """(n, 3), nodes in the gear's own frame [mm]."""
 
     @property
     def z(self) -> Floats:
-        """Heights (n,) [mm]."""
+        """(n,) heights of the nodes [mm]."""
         return self.points[:, 2]
 
     @property
     def roll_length(self) -> Floats:
-        """Transverse curvature radii √(r² − r_b²) (n,) [mm]."""
+        """(n,) transverse curvature radii √(r² − r_b²) at the nodes [mm]."""
         r = np.hypot(self.points[:, 0], self.points[:, 1])
         return np.sqrt(np.maximum(r**2 - self.gear.base_radius**2, 0.0))
 
@@ -51,11 +51,11 @@ class SolvedPosition:
     width."""
 
     result: PositionResult
-    """The solution."""
+    """Contact solution of the position."""
     cut: Slices
-    """Its contact in slices."""
+    """Contact in slices across the face width."""
     teeth: tuple[ToothSummary, ...]
-    """Its tooth pairs in contact, ascending."""
+    """Results of the tooth pairs in contact, in ascending order of their index."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class RunData:
     shapes: tuple[GearShape, GearShape]
     """Sector surfaces of pinion and wheel."""
     positions: tuple[tuple[SolvedPosition, ...], ...]
-    """The positions of the pitch; of each, the results at all friction coefficients."""
+    """Positions of the pitch, each with its results at all friction coefficients."""
     errors: EstimatedErrors = NOT_ESTIMATED
     """Error bars of the engineering figures."""
 

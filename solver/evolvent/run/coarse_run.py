@@ -32,7 +32,7 @@ from evolvent.scene.skips import with_deflected_flanks
 
 
 def companion_of(run: RunContext, scene: Scene) -> Companion | None:
-    """The solved companion, None where its error bars are in the archive already. Collective."""
+    """The solved companion, None where its error bars are archived. Collective."""
     if run.on_first(lambda: read_error_bars(run.archive(scene))) is not None:
         return None
     companion = solve_companion(scene, pitch_of(scene), run.comm, run.prepare)
@@ -65,7 +65,7 @@ def solved_run(
 
 
 def as_run(scene: Scene, model: GearModel, solved: CertifiedPitch, comm: MPI.Comm) -> RunData | None:
-    """A pitch as a run that was not written, of the scene that asks for its flanks: on rank 0, None on the others.
+    """The run of a pitch that was not written, with the scene that asks for its flanks: on rank 0, None on the others.
     Collective."""
     scene = with_deflected_flanks(scene) if solved.deflected else scene
 

@@ -1,4 +1,4 @@
-"""A coarse companion, whose failure costs the error bars only: results are not lost for them."""
+"""Solution of a coarse companion. Its failure costs the error bars only: results are not lost for it."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Attempt(Generic[T]):
-    """What became of a coarse companion."""
+    """Outcome of solving a coarse companion."""
 
     value: T | None = None
-    """Its solution; None where it failed or was not asked for."""
+    """Solution of the companion; None where it failed or was not asked for."""
     reason: str = ""
-    """Why it failed, as a sentence; empty where it did not."""
+    """Why the solution failed, as a sentence; empty where it did not."""
     seconds: float = 0.0
-    """Wall time of its solution [s]."""
+    """Wall time of the solution [s]."""
 
 
 def attempted(solve: Callable[[], T]) -> Attempt[T]:

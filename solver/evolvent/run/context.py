@@ -1,4 +1,4 @@
-"""What belongs to one run: created once, passed to every stage of it."""
+"""Objects that all stages of a run share, created once: ranks, folder, log, progress and cost."""
 
 from __future__ import annotations
 

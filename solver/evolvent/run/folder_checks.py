@@ -1,4 +1,5 @@
-"""Checks of the output folder before a run writes to it: no foreign file is replaced, no result is lost unasked."""
+"""Checks of the output folder before a run writes to it: no foreign file is replaced, and no result is lost without
+--overwrite."""
 
 from __future__ import annotations
 
@@ -25,9 +26,9 @@ WRITTEN = (
 )
 """Files that a run writes for every scene. Fields and pictures are checked one by one when they are written."""
 STUDY = "study.json"
-"""In the folder of a study: what its table is of."""
+"""File in the folder of a study with the identity of its table."""
 NAMED = 10
-"""Largest number of foreign files in a message."""
+"""Largest number of foreign files that a message names."""
 
 
 T = TypeVar("T")
@@ -56,8 +57,9 @@ def require_no_study(out: Path) -> None:
 
 
 def require_new(out: Path, written: Sequence[str], table: str, overwrite: bool) -> None:
-    """Of a command that writes all at its end, and keeps nothing before. written: names of that; table: the one that
-    tells of an earlier call. Raises FolderError where files of others would be lost, or results unasked."""
+    """Checks the folder of a command that archives nothing before its end. written: names of all its files. table: the
+    file by which an earlier call is recognised. Raises FolderError where files of others would be lost, or results
+    without --overwrite."""
     RunFolder(out).require_free(written)
     if (out / table).exists() and not overwrite:
         raise FolderError(
@@ -69,7 +71,8 @@ def require_new(out: Path, written: Sequence[str], table: str, overwrite: bool) 
 def require_unfinished(
     out: Path, written: Sequence[str], kept: tuple[str, str], what: str, resume: bool, overwrite: bool
 ) -> list[str]:
-    """Of a command that keeps results while it goes on. Returns a sentence where there is nothing to go on from.
+    """Checks the folder of a command that archives results while it computes. Returns a sentence where there is nothing
+    to resume.
 
     written: names of all that it writes. kept: the file that is there first, and the table that is written in the end.
     what: it goes on from.

@@ -71,7 +71,7 @@ def load_scenes(scene: Scene, percents: Sequence[float]) -> Mapping[str, Scene]:
 
 
 def _folder(percent: float) -> str:
-    """Its name, another one for each percentage."""
+    """Name of the folder of a run, different for each percentage."""
     whole, point, decimals = str(float(percent)).partition(".")
     return RUNS.format(f"{whole:0>3}{point}{decimals}")
 

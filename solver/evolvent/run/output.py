@@ -1,4 +1,4 @@
-"""What a run writes once its positions are archived: tables, fields and pictures."""
+"""Output of a run once its positions are archived: tables, fields and pictures."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SUMMARY, WEAR, FIELDS = "summary.json", "wear.json", "fields for ParaView"
 
 @dataclass(frozen=True)
 class ExtraResults:
-    """What was computed beside the positions; None where the scene does not ask for it, or where it is archived."""
+    """Results beside the positions; None where the scene does not ask for them, or where they are archived."""
 
     companion: Companion | None
     """Coarse companion for the error bars."""
@@ -72,7 +72,7 @@ def write_output(run: RunContext, scene: Scene, record: SweepRecord, extra: Extr
 
 
 def last_lines(out: Path, scene: Scene) -> str:
-    """What a run prints at its end: its figures, and where all of them are."""
+    """Last lines that a run prints: its key figures, and where all results are."""
     figures = headlines(out / SUMMARY) if (out / SUMMARY).exists() else []
     if scene.wear is not None and (out / WEAR).exists():
         figures = worn_lines(out / WEAR, figures, scene)
@@ -99,7 +99,7 @@ def whereabouts(out: Path, scene: Scene) -> str:
 
 
 def _figures(out: Path) -> str:
-    """What summary.json has, in words."""
+    """Description of summary.json in words: figures, with error bars or without."""
     return "figures with error bars" if (out / SUMMARY).exists() and has_error_bars(out / SUMMARY) else "figures"
 
 
@@ -123,7 +123,7 @@ def log_pictures(drawn: Drawn, log: RunLog) -> None:
 
 
 def facts_of(data: RunData, meshes: MeshRecord, ranks: int, cost: Cost) -> RunFacts:
-    """What the summary says of a run besides its results."""
+    """Facts of a run for its summary, besides results: versions, ranks, mesh, cost."""
     return RunFacts(
         versions=dolfinx_compat.versions(),
         ranks=ranks,

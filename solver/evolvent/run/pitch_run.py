@@ -56,7 +56,7 @@ class ScenePitch:
         self.preparing, self.timings = Timings(), Timings()
 
     def generate(self) -> Iterator[SweptPosition]:
-        """All positions, one after the other: the completed ones, then those that are missing. Collective."""
+        """Completed positions, then the missing ones, as they are solved. Collective."""
         yield from self.completed
         if self.resume is not None and self.resume.is_end:  # the gears need not be condensed
             self.run.log.open()
@@ -111,7 +111,7 @@ class ScenePitch:
             yield replace(position, again=False, closes=position is pitch[-1])
 
     def _prepared(self) -> GearModel:
-        """The condensed gears; the archive is opened for their meshes."""
+        """Condenses the gears and opens the archive for their meshes."""
         gears = self.gears
         if gears is None:
             gears = prepare_gears(self.run, self.scene)

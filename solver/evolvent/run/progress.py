@@ -59,14 +59,14 @@ class Progress:
             self._bars.console.print(Text(sentence))
 
     def advance(self, more: bool = False) -> None:
-        """One more item is done. more: another one follows, even beyond `total`; the stage is then not complete."""
+        """Counts an item as done. more: another one follows, even beyond `total`; the stage is then not complete."""
         task = self._task
         if task is not None:
             done = round(task.completed) + 1
             self._show(task, done, max(task.total or 0.0, done + more))
 
     def position(self, solved: SweptPosition) -> None:
-        """A position of a sweep is done; more follow until one closes the pitch."""
+        """Counts a position of a sweep as done; more follow until one closes the pitch."""
         self.advance(more=not solved.closes)
 
     def reach(self, done: int) -> None:
@@ -99,7 +99,7 @@ class Progress:
 
 
 class _Count(ProgressColumn):
-    """Items done and their total, of a stage that counts them."""
+    """Column with the number of items done and their total, where a stage counts them."""
 
     def render(self, task: Task) -> Text:
         total = task.total
@@ -108,7 +108,7 @@ class _Count(ProgressColumn):
 
 
 class _Left(ProgressColumn):
-    """The estimated remaining time."""
+    """Column with the estimated remaining time."""
 
     def render(self, task: Task) -> Text:
         seconds = task.time_remaining

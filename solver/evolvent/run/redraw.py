@@ -23,7 +23,7 @@ from evolvent.run.folder_checks import changed_files
 from evolvent.strength.results.pictures import FATIGUE_PICTURE, ROOT_STRESS_PICTURE
 
 RUN = "summary.json"
-"""File that says that a run is finished."""
+"""File by which a finished run is recognised."""
 FROM_TABLES = (
     LOADS_PICTURE, OPERATION_PICTURE, EXCITATION_PICTURE, *VIBRATION_PICTURES, *TRANSIENT_PICTURES,
     ROOT_STRESS_PICTURE, FATIGUE_PICTURE,
@@ -61,7 +61,7 @@ def _both(first: Drawn, second: Drawn) -> Drawn:
 
 
 def _run(out: Path) -> Drawn:
-    """Those of a run, and of its wear."""
+    """Draws the pictures of a run, and of its wear."""
     drawn = draw(pictures(_with_pictures(read_run(out))), RunFolder(out))
     if sentence := changed_files(out):
         drawn = Drawn(drawn.written, (*drawn.failures, sentence))
@@ -74,6 +74,6 @@ def _run(out: Path) -> Drawn:
 
 
 def _with_pictures(run: RunData) -> RunData:
-    """The same run of a scene that asks for pictures."""
+    """The run, with a scene that asks for pictures."""
     wanted = run.scene.output.model_copy(update={"pictures": True})
     return replace(run, scene=run.scene.model_copy(update={"output": wanted}))

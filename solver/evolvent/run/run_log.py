@@ -34,7 +34,7 @@ class LogFile(logging.Handler):
 
     @property
     def path(self) -> Path:
-        """OUT/run.log."""
+        """Path of OUT/run.log."""
         return self._folder.out / LOG
 
     def begin(self) -> None:
@@ -84,15 +84,15 @@ class RunLog:
             self._handler.begin()
 
     def info(self, message: str, *values: object) -> None:
-        """A line of the log."""
+        """Writes a line to the log."""
         self._logger.info(message, *values)
 
     def warning(self, message: str) -> None:
-        """A line of the log, also printed on stderr."""
+        """Writes a line to the log and prints it on stderr."""
         self._logger.warning("warning: %s", message)
 
     def error(self, message: str, *values: object) -> None:
-        """A line of the log on why the run ended."""
+        """Writes the reason for which the run ended to the log."""
         self._logger.error(message, *values)
 
 

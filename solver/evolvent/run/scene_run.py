@@ -41,7 +41,7 @@ from evolvent.scene.skips import one_mesh_reason, skipped, switched_off, wanted_
 from evolvent.scene.vibration_limits import doubtful
 
 NOTHING_LEFT = "complete: nothing to compute, tables and pictures are written again"
-"""What is said of a resumed run that was finished."""
+"""Message of a resumed run that was complete."""
 
 
 def run_scene(
@@ -85,7 +85,7 @@ def run_scene(
 
 
 def _log_beginning(run: RunContext, scene: Scene) -> None:
-    """Logs what is known of a run before anything is computed."""
+    """Logs the facts of a run that are known before anything is computed."""
     if left := run.on_first(lambda: foreign_files(run.folder.out)):
         run.log.info("%s", left)
     if anew := run.on_first(lambda: no_results_warning(scene, run.archive(scene)) if run.resume else ""):
@@ -102,7 +102,8 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
 
 
 def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None, point: OperatingPoint | None) -> None:
-    """Computes and writes everything that the scene asks for. point: of its vibration, where it has one."""
+    """Computes and writes everything that the scene asks for. point: operating point of its vibration, where it has
+    one."""
     if scene.wear is None:
         scene, record = sweep_scene(run, scene, completed)
     else:
@@ -127,7 +128,7 @@ def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None, point
 
 
 def _write_operation(run: RunContext, scene: Scene, operation: Operation) -> None:
-    """Writes the mesh force under which contact was computed, and where it comes from. Collective."""
+    """Writes the mesh force under which contact was computed, and the vibration that it comes from. Collective."""
 
     def written() -> None:
         assert scene.dynamics is not None

@@ -1,4 +1,4 @@
-"""How a run begins: what earlier results it continues, its condensed gears, the bodies of its vibration, its folder."""
+"""Begin of a run: earlier results that it continues, condensed gears, bodies of its vibration, and its folder."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from evolvent_meshes.gears.member import Member
 
 @dataclass(frozen=True)
 class ResumePoint:
-    """What an earlier run has completed."""
+    """Positions that an earlier run has completed, and the state of its sweep."""
 
     positions: tuple[SweptPosition, ...]
     """The completed positions in the order of their solution."""
@@ -45,7 +45,8 @@ class ResumePoint:
 
 
 def resume_point(scene: Scene, archive: Archive, resume: bool) -> ResumePoint | None:
-    """Where to continue, None for the beginning. Raises ArchiveError where the results belong to another scene."""
+    """Where the run continues; None where it begins anew. Raises ArchiveError where the results belong to another
+    scene."""
     pair = scene.gear_pair()
     state = archive.read_state(pair) if resume else None
     if state is None:
@@ -116,14 +117,14 @@ def clear(folder: RunFolder) -> None:
 def with_bodies(
     settings: DriveSettings, problem: GearProblem, section: DynamicsSection, comm: MPI.Comm
 ) -> DriveSettings:
-    """The settings with the bodies that the section wants. Collective. Raises as `with_elastic_bodies`."""
+    """The settings with rigid or elastic bodies, as the section asks. Collective. Raises as `with_elastic_bodies`."""
     if section.bodies == "rigid":
         return settings
     return on_first(comm, lambda: with_elastic_bodies(settings, problem, section.density_kg_m3))
 
 
 def elastic_point(scene: Scene, comm: MPI.Comm) -> OperatingPoint | None:
-    """As `operating_point`, with the scene's gear bodies. Collective."""
+    """Operating point of the scene, with rigid or elastic gear bodies as the scene asks. Collective."""
     point, section = operating_point(scene), scene.dynamics
     if point is None or section is None:
         return None

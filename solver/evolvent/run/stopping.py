@@ -25,7 +25,7 @@ GLANCE = 0.3
 
 
 class Stopped(KeyboardInterrupt):
-    """The process was asked to end; the message names the signal."""
+    """Request to end the process by a signal, which the message names."""
 
 
 @contextmanager
@@ -79,7 +79,7 @@ def _message(number: int, advice: str) -> str:
 
 
 def _raise(advice: str, number: int, frame: FrameType | None) -> None:
-    """The handler of `SIGNALS`."""
+    """Handler of `SIGNALS` that raises Stopped."""
     for each in SIGNALS:
         signal.signal(each, signal.SIG_IGN)  # a second signal must not interrupt the cleaning up after the first
     raise Stopped(_message(number, advice))

@@ -102,13 +102,13 @@ def law_of(wear: WearSection) -> Archard:
 
 
 def settings_of(wear: WearSection) -> BlockSettings:
-    """How the study is divided into blocks of cycles."""
+    """Settings of the block stepping: first block, tolerance, explicit or implicit."""
     first = wear.first_block_cycles or FIRST_BLOCK * wear.cycles
     return BlockSettings(first, wear.tolerance, wear.blocks == "implicit")
 
 
 def mesh_motion_of(run: RunContext, scene: Scene) -> GearMeshMotion:
-    """When the meshes follow the wear, and how the gears are condensed then."""
+    """Settings of the mesh updates in a wear study, and the function that condenses the gears after one."""
     assert scene.wear is not None
     given, module = scene.wear.refresh_um, scene.pair.normal_module_mm
 

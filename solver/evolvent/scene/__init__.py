@@ -1,1 +1,1 @@
-"""The scene file: read, checked, completed with defaults."""
+"""Scene file: reading, validation and defaults."""

@@ -8,17 +8,17 @@ from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent_meshes.gears.pair import GearPair
 
 AGREES = 1.0
-"""Backlashes closer than this are the same [µm]: drawings have whole micrometres."""
+"""Difference below which two backlashes agree [µm]: drawings have whole micrometres."""
 GIVING = (
     "it in µm along the line of action, negative tooth_thickness_allowance_um of [pinion] and [wheel], or a larger "
     "pair.centre_distance_mm"
 )
-"""Keys from which a backlash follows."""
+"""Keys of the scene from which a backlash follows."""
 
 
 def backlash_conflict(pair: GearPair, given_um: float) -> InputProblem | None:
-    """Why a backlash along the line of action [µm] cannot be that of gears with tooth thickness allowances, from which
-    it follows; None where it can, or where the gears have no allowances."""
+    """Message on a backlash along the line of action [µm] that contradicts the tooth thickness allowances of the gears;
+    None where it agrees, or where the gears have no allowances."""
     if not any(gear.tooth_thickness_allowance_um for gear in pair.gears):
         return None
     follows = _of_gears(pair)
@@ -30,8 +30,8 @@ def backlash_conflict(pair: GearPair, given_um: float) -> InputProblem | None:
 
 
 def unnamed_backlash(pair: GearPair, given_um: float | None) -> InputProblem | None:
-    """Why a pair's vibration cannot be computed: nobody has said which backlash it has; None where somebody has. What
-    the rounding of a centre distance leaves is none."""
+    """Problem of a vibration without a given backlash; None where one is given or follows from the gears. A backlash
+    from the rounding of a centre distance does not count."""
     if given_um is not None or _of_gears(pair) > AGREES:
         return None
     allowed = "the backlash of the pair: without any, back flanks catch the teeth at once, so that none part"

@@ -1,4 +1,4 @@
-"""What every command says of a scene's flank charts: input that is not used as it stands."""
+"""Warnings on a scene's flank charts, which every command gives: input that is not used as it stands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The keys in which two scenes differ, of those that results depend on."""
+"""Keys in which two scenes differ, among those that results depend on."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from evolvent.scene.schema.output import OutputSection, SkipSection
 from evolvent.scene.skips import OF_OUTPUT, with_deflected_flanks
 
 MOST = 3
-"""Largest number of keys in a message."""
+"""Largest number of keys that a message names."""
 NOT_GIVEN = "not given"
 
 
 def essence(scene: Scene) -> Scene:
-    """The scene without what its results do not depend on: title, output and the paths of flank charts."""
+    """The scene without the parts that its results do not depend on: title, output and the paths of flank charts."""
     ways = SkipSection(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
     bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
     return scene.model_copy(update={"title": "", "output": OutputSection(), "skip": ways, **bare})
@@ -47,7 +47,7 @@ def _differing(kept: Scene, wanted: Scene) -> list[str]:
 
 
 def _flat(section: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Dotted key -> value."""
+    """Nested values by dotted keys."""
     flat: dict[str, Any] = {}
     for name, value in section.items():
         flat |= _flat(value, f"{prefix}{name}.") if isinstance(value, Mapping) else {f"{prefix}{name}": value}

@@ -7,7 +7,7 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.modifications.modifications import Modifications
 
 END_RELIEF_LENGTH = 0.1
-"""Of the face width, at either end."""
+"""Default length of an end relief over the face width, at either end."""
 
 
 def modifications_of(keys: FlankKeys, gear: GearParameters, active_start: float) -> Modifications:

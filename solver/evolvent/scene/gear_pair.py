@@ -21,7 +21,7 @@ from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.pair_geometry import tip_alteration
 
 ADDENDUM, DEDENDUM = 1.0, 1.25
-"""Basic rack of ISO 53, profile A, in normal modules."""
+"""Addendum and dedendum of the basic rack of ISO 53, profile A, in normal modules."""
 HANDS = {"right": 1, "left": -1}
 """Direction of the helix -> its sign."""
 
@@ -63,7 +63,7 @@ GEAR_KEYS = {
 
 
 class ImpossibleGears(InputError):
-    """The gears of a scene cannot exist or cannot mesh. problem: what is wrong, in keys of the scene."""
+    """Error of gears that cannot exist or cannot mesh. problem: what is wrong, in keys of the scene."""
 
     def __init__(self, problem: InputProblem) -> None:
         super().__init__(str(problem))
@@ -245,7 +245,7 @@ def _in_scene_keys(
 
 
 def _named(key: str, given: object, name: str, error: GeometryError, remedy: str) -> InputProblem:
-    """The given value is what was found; a value derived from it is added with its name."""
+    """Problem with a given value; a value derived from it is added with its name."""
     same = isinstance(given, (int, float)) and f"{given:.6g}" == error.found
     derived = f"{name.replace('_', ' ')} {error.found}"
     found = shown(given) if same else f"{NOTHING if given is None else shown(given)} (so {derived})"

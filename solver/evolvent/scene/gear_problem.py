@@ -1,4 +1,4 @@
-"""From a scene to the plain data that the rooms of `gears` are given; here, once, a scene's skips become options."""
+"""Gear problem of a scene: the plain data for `gears`. Skips of the scene become options here only."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def gear_problem(scene: Scene) -> GearProblem:
 
 
 def gear_options(scene: Scene) -> GearOptions:
-    """What the scene wants computed in full: what skip.off names."""
+    """Options for parts that the scene wants computed in full, as skip.off names them."""
     off = set(scene.skip.off)
     return GearOptions(
         in_space="plane" in off,
@@ -39,8 +39,8 @@ def gear_options(scene: Scene) -> GearOptions:
 
 
 def two_levels(scene: Scene) -> bool | None:
-    """Whether flanks have levels of their own: None where it is left to the size of the mesh. Wear is followed on the
-    nodes of one fine mesh."""
+    """Whether flanks have levels of their own; None where the size of the mesh decides. Wear is followed on the nodes
+    of one fine mesh."""
     return None if scene.wear is None and "two-level" not in scene.skip.off else False
 
 

@@ -7,11 +7,11 @@ from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.gears.pair import GearPair
 
 KG_M2 = 1e3
-"""t·mm² per kg·m²."""
+"""One kg·m² in t·mm²."""
 
 
 def moments_of_inertia(pair: GearPair, section: DynamicsSection) -> tuple[float, float]:
-    """Of pinion and wheel [t·mm²]: what the section says, else that of the gear body."""
+    """Moments of inertia of pinion and wheel [t·mm²]: those that the section gives, else those of the gear bodies."""
     given = section.pinion_inertia_kg_m2, section.wheel_inertia_kg_m2
     pinion, wheel = (
         polar_moment(gear, section.density_kg_m3) if value is None else KG_M2 * value

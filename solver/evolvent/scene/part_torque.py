@@ -9,7 +9,8 @@ from evolvent.scene.schema.errors import shown
 
 
 def under_torque(scene: Scene, torque: float, mesh_torques: tuple[float, float] | None = None) -> Scene:
-    """The scene under another torque [N·m], on meshes for a range of torques [N·m] or for this one alone.
+    """The scene under another torque [N·m], on meshes for a range of torques [N·m] or for this one alone. Raises
+    SceneError, whose message names the refused part of the scene's own torque.
 
     Raises SceneError, which says what part of the scene's own torque is refused.
     """

@@ -22,7 +22,7 @@ def fixed(value: float, digits: int) -> str:
 
 
 def cycles_label(cycles: float) -> str:
-    """ "0.4 million", "20 thousand"."""
+    """A number of cycles in words, such as "0.4 million" or "20 thousand"."""
     for size, name in ((1e9, " billion"), (1e6, " million"), (1e3, " thousand")):
         if cycles >= 0.1 * size:
             return f"{cycles / size:.4g}{name}"

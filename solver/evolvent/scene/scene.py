@@ -185,7 +185,7 @@ class Scene(SceneSection):
         return HertzEstimate.of(pair, self.materials(), torque if self.load.on == "pinion" else torque / pair.ratio)
 
     def planned_vibration(self) -> PlannedVibration:
-        """What the limits of [dynamics] and [transient] depend on."""
+        """Quantities of the scene on which the limits of [dynamics] and [transient] depend."""
         pair, (pinion, wheel) = self.gear_pair(), self.materials()
         force = self.hertz_estimate().pinion_torque / pair.pinion.base_radius
         return PlannedVibration(

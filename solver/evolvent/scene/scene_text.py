@@ -19,15 +19,15 @@ class FileKind:
     """A kind of TOML file, for messages."""
 
     name: str
-    """What the file is."""
+    """Name of the kind of file."""
     example: str
-    """A sentence that names an example."""
+    """Sentence that names an example."""
 
 
 SCENE = FileKind("scene file", "demos/yang2022.toml is a complete example")
 STUDY_FILE = FileKind("study file", "demos/studies/yang2022_misalignment.toml is a complete example")
 OF_STUDIES = frozenset({"compute", "set", "grid", "list", "latin_hypercube"})
-"""Keys and sections that studies have, and scenes have not."""
+"""Keys and sections of study files that scenes do not have."""
 LARGEST = 1
 """Largest size of a scene file [MB]."""
 DEEPEST = 8
@@ -84,7 +84,7 @@ def _require_short_keys(text: str, kind: FileKind) -> None:
 
 
 def _no_toml(text: str, error: Exception, kind: FileKind) -> InputProblem:
-    """Why a text cannot be parsed as TOML, with the line where that was noticed."""
+    """Reason why a text cannot be parsed as TOML, with the line of the error."""
     number, line = _named_line(text, str(error))
     remedy = f'mend that line; texts stand in "quotes", every key only once; {kind.example}'
     if known := written_otherwise(line):

@@ -29,11 +29,11 @@ class Skip:
     """A part of the computation that may be left out."""
 
     name: SkipName
-    """As in docs/scene.md."""
+    """Name of the skip, as in docs/scene.md."""
     applies: Callable[[Scene], bool]
-    """Whether a scene can do without."""
+    """Whether a scene allows the skip."""
     sentence: Callable[[Scene], str]
-    """What is left out, for `check`, the log and summary.json."""
+    """Sentence on the part that is left out, for `check`, the log and summary.json."""
     tolerance: float
     """Largest difference from the result without the skip: of transmission error, peak pressure, torques and lost share
     of the input power, each over its largest value in the pitch."""
@@ -44,9 +44,9 @@ class Skipped:
     """A skip that was made, as in summary.json."""
 
     name: SkipName
-    """As in docs/scene.md."""
+    """Name of the skip, as in docs/scene.md."""
     sentence: str
-    """What is left out, in this scene."""
+    """Sentence on the part that is left out, with values of this scene."""
 
 
 def _always(_: Scene) -> bool:
@@ -89,7 +89,7 @@ def _levels_sentence(scene: Scene) -> str:
 
 
 def one_mesh_reason(scene: Scene) -> str:
-    """A sentence where flanks of a large mesh have no levels of their own though the scene leaves that open; else
+    """A sentence on a large mesh whose flanks have no levels of their own although the scene leaves that open; else
     empty."""
     problem = gear_problem(scene)
     if "two-level" in scene.skip.off or problem.is_plane or not is_large(problem):
@@ -201,7 +201,7 @@ OF_OUTPUT: tuple[SkipName, ...] = ("error-bars", "fields", "pictures")
 
 
 def skip_named(name: SkipName) -> Skip:
-    """The registry's entry."""
+    """The skip of this name."""
     return next(skip for skip in SKIPS if skip.name == name)
 
 
@@ -211,7 +211,7 @@ def skips(scene: Scene, name: SkipName) -> bool:
 
 
 def skipped(scene: Scene) -> list[Skipped]:
-    """The skips that are made."""
+    """The skips that a scene makes, each with its sentence."""
     return [Skipped(skip.name, skip.sentence(scene)) for skip in SKIPS if skips(scene, skip.name)]
 
 
@@ -221,8 +221,8 @@ def switched_off(scene: Scene) -> list[SkipName]:
 
 
 def with_deflected_flanks(scene: Scene) -> Scene:
-    """The scene that asks for deflected flanks, by which a run's files tell that they were needed; the same scene where
-    it does so already or where they do not apply."""
+    """The scene with deflected flanks, by which the files of a run show that they were needed. Unchanged where it has
+    them already or where they do not apply."""
     if not skips(scene, "deflected-flanks"):
         return scene
     off = SkipSection(off=(*scene.skip.off, "deflected-flanks"))
@@ -230,7 +230,7 @@ def with_deflected_flanks(scene: Scene) -> Scene:
 
 
 def wanted_output(scene: Scene) -> OutputSection:
-    """What is written beside the tables."""
+    """Section [output] with all that skip.off adds: pictures, animation, fields and error bars."""
     off = scene.skip.off
     asked = scene.output
     drawn = "pictures" in off

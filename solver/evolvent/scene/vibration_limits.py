@@ -1,4 +1,4 @@
-"""Which speeds, inertias and compliances a vibration can be computed with, and which of them are doubtful."""
+"""Limits of the speeds, inertias and compliances of a vibration, and values that are doubtful."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from evolvent.scene.schema.errors import InputProblem, shown
 from evolvent_meshes.gears.pair import GearPair
 
 FASTEST_RIM, FAST_RIM = 400.0, 200.0
-"""Speed of a tip circle [m/s] above which a scene is refused, and is doubtful. At 400 m/s rotation alone puts 1 GPa at
-the bore of a steel disc, (3 + ν)/4 ϱ v²; the fastest gears that are built have about 200 m/s."""
+"""Peripheral speeds of a tip circle [m/s] above which a scene is refused, and is doubtful. At 400 m/s rotation alone
+puts 1 GPa at the bore of a steel disc, (3 + ν)/4 ϱ v²; the fastest gears that are built have about 200 m/s."""
 SLOWEST = 0.01
 """Lowest speed of a vibration over the natural one: below it a mesh period has a hundred natural ones and more, in
 which vibration dies away, and the time that it takes to compute goes with their number."""
@@ -27,23 +27,24 @@ value in kg·mm² is 1e6 times one in kg·m²; a flywheel above it turns as unif
 LIGHTEST = 0.01
 """Moment of inertia over that of the teeth alone below which a scene is refused; below 1 it is doubtful."""
 SOFT = 0.05
-"""Stiffness in series with the mesh over that of the mesh by ISO 6336-1, below which it is doubtful."""
+"""Stiffness in series with the mesh over that of the mesh by ISO 6336-1, below which the stiffness in series is
+doubtful."""
 
 
 @dataclass(frozen=True)
 class PlannedVibration:
-    """What limits depend on."""
+    """Quantities of a scene on which limits of its vibration depend."""
 
     pair: GearPair
-    """Both gears."""
+    """Geometry of the gear pair."""
     force: float
-    """Static, along the line of action in the transverse section [N]."""
+    """Static force along the line of action in the transverse section [N]."""
     moduli: tuple[float, float]
-    """Of both gears [MPa]."""
+    """Young's moduli of both gears [MPa]."""
     dynamics: DynamicsSection | None
-    """The section of the scene, None where it has none."""
+    """Section [dynamics] of the scene, None where it has none."""
     transient: TransientSection | None
-    """Likewise."""
+    """Section [transient] of the scene, None where it has none."""
 
     @property
     def fastest(self) -> float:
@@ -54,13 +55,14 @@ class PlannedVibration:
 
     @cached_property
     def mesh_stiffness(self) -> float:
-        """c_γα of ISO 6336-1 times the face width [N/mm]."""
+        """Mesh stiffness: c_γα of ISO 6336-1 times the face width [N/mm]."""
         iso = method_b(self.pair, 1.0, self.force, Accuracy(), self.moduli)
         return 1e3 * iso.mesh_stiffness * self.pair.face_width
 
     @cached_property
     def natural_speed(self) -> float:
-        """Of the pinion [r/min], by that stiffness and what gives way in series."""
+        """Speed of the pinion [r/min] at which the mesh frequency is the natural frequency, by `mesh_stiffness` and the
+        stiffness in series."""
         section = self.dynamics or DynamicsSection()
         mass, flexible = equivalent_mass(self.pair, moments_of_inertia(self.pair, section)), 1.0 / self.mesh_stiffness
         if section.series_stiffness_N_per_um is not None:
@@ -91,12 +93,12 @@ class PlannedVibration:
 
 
 def impossible(planned: PlannedVibration) -> InputProblem | None:
-    """The first thing with which a vibration cannot be computed, None where there is none."""
+    """First problem for which a vibration cannot be computed, None where there is none."""
     return next((each for part in (_inertias, _series, _speeds) for each in part(planned)), None)
 
 
 def doubtful(planned: PlannedVibration) -> list[str]:
-    """A sentence on each value that is hardly meant."""
+    """A sentence on each value that is unlikely to be intended."""
     found = []
     for name, value, teeth, disc in planned.inertias:
         if value < teeth:

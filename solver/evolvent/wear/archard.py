@@ -29,7 +29,7 @@ class VolumeLost(ResultError):
 
 
 class StepsTooLong(InputError):
-    """A step of a cycle slides further than the contact is wide."""
+    """Error of a cycle in which a step slides further than the contact is wide."""
 
 
 def certify_volume(name: str, nodal: float, integral: float) -> None:
@@ -83,7 +83,8 @@ class DepthProjection:
 
     @staticmethod
     def of(surface: Surface, facets: Ints, xi: Floats) -> DepthProjection:
-        """At points xi (q, d−1) of the facets (q,); a point slightly outside the surface counts to its rim."""
+        """Projection at points xi (q, d−1) of the facets (q,); a point slightly outside the surface counts to its rim.
+        """
         return DepthProjection(surface.hat_matrix(facets, xi), surface.weights())
 
     def depth(self, volumes: Floats) -> Floats:

@@ -84,7 +84,7 @@ E = TypeVar("E", bound=CycleEvaluation, covariant=True)
 
 
 class WearModel(Protocol[E]):
-    """What block stepping needs of a wear model: rates, implicit blocks, mesh updates."""
+    """Interface of a wear model to block stepping: wear rates, implicit blocks and mesh updates."""
 
     def evaluate(self, depth: Floats, previous: Any = None) -> E:
         """Evaluates one cycle at depths (n,) [mm].

@@ -35,8 +35,8 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 EDGE_SHARE = 0.25
-"""Of the shortest cell edge at a worn surface: a depth in the gap up to this changes the body's stiffness by no more
-than the mesh resolves."""
+"""Limit of the depth in the gap over the shortest cell edge at a worn surface: up to this the depth changes the body's
+stiffness by no more than the mesh resolves."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class WearStudy:
 
     @property
     def areas(self) -> Floats:
-        """(n,) of all worn nodes, and of the tracks [mm²; mm in 2D]."""
+        """(n,) areas of all worn nodes, and of the nodes of tracks [mm²; mm in 2D]."""
         return self.geometry.areas
 
     def by_side(self, depth: Floats) -> SideDepths:

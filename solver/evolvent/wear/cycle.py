@@ -34,7 +34,7 @@ SideDepths = dict[Side, Floats]
 
 @dataclass(frozen=True)
 class Cycle:
-    """What repeats in a wear study.
+    """Steps and rigid motions that repeat in a wear study.
 
     steps: the steps of the cycle, solved one after the other.
     travel: rigid motions that continue through the last step. Without travel the slip of all steps wears, and the

@@ -59,7 +59,7 @@ class Travel:
         return np.asarray(np.asarray(self.translation) + np.cross(self.rotation, arms))[:, :d]
 
     def in_frame(self, placement: Placement) -> Travel:
-        """The same motion in the frame of a body placed there; in 2D its part in the plane."""
+        """The rigid motion in the frame of a body placed there; in 2D its part in the plane."""
         d = len(placement.translation)
         R, shift, in_plane = np.eye(3), np.zeros(3), np.arange(3) < d
         R[:d, :d], shift[:d] = placement.rotation, placement.translation
@@ -83,7 +83,7 @@ class TrackCoordinate:
     radial: bool = False
 
     def at(self, points: Floats) -> Floats:
-        """c (q,) of points (q, d)."""
+        """Coordinates c (q,) of points (q, d)."""
         arms = np.pad(points, ((0, 0), (0, 3 - points.shape[1]))) - self.centre
         along = arms @ self.direction
         return np.linalg.norm(arms - along[:, None] * self.direction, axis=1) if self.radial else along
@@ -104,7 +104,7 @@ class Track:
 
     @cached_property
     def areas(self) -> Floats:
-        """m_k (g,) [mm²; mm in 2D], exact where l is linear in c."""
+        """Areas m_k (g,) of the nodes [mm²; mm in 2D], exact where l is linear in c."""
         if len(self.grid) == 1:
             return self.lengths
         step, low, high = np.diff(self.grid) / 6.0, self.lengths[:-1], self.lengths[1:]

@@ -81,7 +81,7 @@ class WornGeometry:
 
     @property
     def areas(self) -> Floats:
-        """(n,) of all worn nodes, and of the tracks [mm²; mm in 2D]."""
+        """(n,) areas of all worn nodes, and of the nodes of tracks [mm²; mm in 2D]."""
         return np.concatenate(self._areas)
 
     @property
@@ -153,7 +153,7 @@ class WornGeometry:
             yield WornSurface(surface, nodal)
 
     def _volume(self, body: int, depths: SideDepths) -> float:
-        """Σ m h [mm³; mm² in 2D] of one body's mesh."""
+        """Worn volume Σ m h [mm³; mm² in 2D] of one body's mesh."""
         return sum(float(w.surface.weights() @ w.depth) for w in self._worn_surfaces(body, depths))
 
     def _reaches(self) -> list[float]:

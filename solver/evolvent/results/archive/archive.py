@@ -129,7 +129,7 @@ def _shape(arrays: Arrays, name: str) -> GearShape:
 
 
 def _position(arrays: Arrays, pair: GearPair) -> SweptPosition:
-    """A swept position without the state after it."""
+    """A swept position, without the state of the sweep after it."""
     results = tuple(archived_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
     state, again, closes = SweepState((0.0, 0.0), ()), bool(arrays["again"]), bool(arrays["closes"])
     return SweptPosition(float(arrays["angle"]), results, state, again, closes)

@@ -18,7 +18,7 @@ METHOD = (
     "away from the starts of linear reliefs; where "
     "flanks have levels, what the reach of their patches leaves out is not in it (docs/two_level.md)"
 )
-"""How error bars are estimated, as summary.json says it; bars archived with another method are estimated anew."""
+"""Method of the error bars, as summary.json names it; bars archived with another method are estimated anew."""
 FILE = "results/errors.npz"
 FINER = 3
 """Largest number of additional decimals with which `plus_minus` prints."""
@@ -56,9 +56,9 @@ class EstimatedErrors:
     figures: tuple[FigureErrors, ...] = ()
     """Errors at each friction coefficient, in the scene's order; empty where none were estimated."""
     method: str = ""
-    """How they were estimated; empty where they were not."""
+    """Method of the error bars; empty where none were estimated."""
     missing: str = "Error bars were not asked for."
-    """The reason why there are none, as a sentence; empty where there are some."""
+    """Reason why there are no error bars, as a sentence; empty where there are some."""
 
     def bar(self, figure: str, index: int) -> float:
         """The error of a figure, a field of `FigureErrors`, at the friction coefficient with this index; NaN where
@@ -86,7 +86,7 @@ def read_error_bars(archive: Archive) -> EstimatedErrors | None:
 
 
 def _errors(arrays: Arrays) -> EstimatedErrors | None:
-    """None where they were estimated with another method, or of other figures."""
+    """Archived error bars; None where they were estimated with another method, or of other figures."""
     method, values = str(arrays["method"]), arrays["values"]
     if method != METHOD or values.shape[1] != len(fields(FigureErrors)):
         return None

@@ -1,4 +1,4 @@
-"""What is kept of the meshes of a run: surfaces of both sectors for pictures, counts and quality for the tables."""
+"""Archived data of the meshes of a run: surfaces of both sectors for pictures, counts and quality for the tables."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class GearShape:
 
 @dataclass(frozen=True)
 class MeshRecord:
-    """What output needs of the meshes of both gears."""
+    """Surfaces, size and quality of the meshes of both gears, for the output."""
 
     shapes: tuple[GearShape, GearShape]
     """Surfaces of pinion and wheel."""
@@ -38,11 +38,11 @@ class MeshRecord:
     cells: int
     """Cells of both sectors."""
     min_scaled_jacobian: float
-    """Of the cells of both sectors."""
+    """Smallest scaled Jacobian of the cells of both sectors."""
 
     @staticmethod
     def of(gears: Sequence[MeshedGear]) -> MeshRecord:
-        """Of pinion and wheel."""
+        """The record of the meshes of pinion and wheel."""
         pinion, wheel = (gear_shape(gear) for gear in gears)
         return MeshRecord(
             shapes=(pinion, wheel),

@@ -17,14 +17,14 @@ CONTACT_KEYS = {"roll_distance": "ξ"}
 
 
 def result_arrays(result: PositionResult) -> dict[str, Any]:
-    """Name -> array."""
+    """Arrays of a position's result by their names in the archive."""
     arrays = {f.name: getattr(result, f.name) for f in fields(PositionResult) if f.name not in ("stand", "contact")}
     arrays |= {_contact_key(f.name): getattr(result.contact, f.name) for f in fields(ContactPoints)}
     return arrays | {"angle": result.stand.angle, "extra": np.array(result.stand.extra)}
 
 
 def archived_result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResult:
-    """The result whose names begin with `start`. Raises KeyError where one is missing."""
+    """Result of a position from the arrays whose names begin with `start`. Raises KeyError where one is missing."""
     kept = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
     stand = Stand(pair, float(kept.pop("angle")), (float(kept["extra"][0]), float(kept.pop("extra")[1])))
     contact = ContactPoints(**{f.name: kept.pop(_contact_key(f.name)) for f in fields(ContactPoints)})

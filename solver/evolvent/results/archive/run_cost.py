@@ -20,13 +20,13 @@ class Timings:
     last archived position or error bars is not counted."""
 
     mesh: float = 0.0
-    """Meshes of both gears."""
+    """Meshing of both gears."""
     assemble: float = 0.0
     """Assembly of stiffness and of Nitsche's constant term."""
     factor: float = 0.0
     """Condensation of both gears, and coupling of sectors to rings."""
     positions: float = 0.0
-    """All positions at all friction coefficients; all blocks of a wear study."""
+    """Solution of all positions at all friction coefficients, or of all blocks of a wear study."""
     error_bars: float = 0.0
     """Solution of the coarse companion."""
     output: float = 0.0

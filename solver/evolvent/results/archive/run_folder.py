@@ -30,7 +30,7 @@ FOLDERS = (".", "results", "fields", "pictures")
 LONGEST = 200
 """Length that no name of a file of a run reaches [characters]."""
 NAMED = 5
-"""Largest number of files named in a message."""
+"""Largest number of files that a message names."""
 
 
 class FolderError(InputError):
@@ -42,7 +42,7 @@ class RunFolder:
     """The output folder of a run."""
 
     out: Path
-    """The folder OUT."""
+    """Path of the folder OUT."""
 
     def write(self, name: str | Path, content: bytes | memoryview) -> Path:
         """Writes OUT/name and lists it; returns its path. A file that a run wrote with the same content is left as it

@@ -1,4 +1,4 @@
-"""Arrays that a computation keeps below OUT: files (.npz) that each name what they belong to.
+"""Archives of arrays below OUT: files (.npz), each with the identity of its scene.
 
 A call that goes on from them refuses those of another scene, of another version, and files that are none. A file is
 written under a temporary name and then renamed, so that a call killed at any moment leaves whole files only.
@@ -35,9 +35,9 @@ class Store:
     identity: str
     """SHA-256 of everything that the arrays depend on."""
     another: Callable[[Path], str]
-    """Message on a file with another identity: wanted, found, remedy."""
+    """Message on a file with another identity: wanted, given, remedy."""
     key: str = "identity"
-    """Name under which a file has its identity."""
+    """Name of the array in a file that holds its identity."""
 
     def holds(self, name: str) -> bool:
         """Whether there is a file of this identity. Raises ArchiveError where it cannot be read."""

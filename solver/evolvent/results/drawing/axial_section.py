@@ -10,7 +10,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 
 HELD_WIDTH = 3.0
-"""Of the line along the held part of a bore [points]."""
+"""Width of the line along the held part of a bore [points]."""
 
 
 def body_outline(gear: GearParameters) -> Floats:
@@ -40,7 +40,7 @@ def draw_axial_section(axes: Axes, gear: GearParameters, colour: str) -> None:
 
 
 def _sizes(gear: GearParameters) -> list[str]:
-    """Those that the body has, in two lines."""
+    """Two lines with the dimensions of a gear body."""
     width = f"axial section, b = {gear.face_width:g}, bore {gear.bore_diameter:.6g} mm"
     web = gear.thin_web
     if web is None:

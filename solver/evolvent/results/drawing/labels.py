@@ -15,7 +15,7 @@ SYMBOLS = {"face_load_factor": "K_Hβ"}
 
 
 def ending(name: str) -> str:
-    """The part of a name that says its unit; empty where there is none."""
+    """Unit at the end of a name, as it is written there; empty where there is none."""
     return next((each for each in UNITS if name.endswith(each)), "")
 
 

@@ -16,9 +16,9 @@ class Picture:
     """A picture that is not drawn yet."""
 
     name: str
-    """Name of its file in OUT/pictures."""
+    """Name of the file in OUT/pictures."""
     draw: Callable[[], bytes]
-    """Function that draws it and returns the content of the file."""
+    """Function that draws the picture and returns the content of the file."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Drawn:
     """Outcome of drawing pictures."""
 
     written: tuple[Path, ...]
-    """Files written."""
+    """Paths of the files written."""
     failures: tuple[str, ...]
     """A sentence for each picture that could not be drawn."""
 

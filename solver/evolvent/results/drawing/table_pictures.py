@@ -17,37 +17,37 @@ class Readable(Protocol):
 
     @property
     def name(self) -> str:
-        """Name of its file."""
+        """Name of the file."""
 
     def read(self, folder: Path) -> Any:
-        """Its content. Raises ArchiveError."""
+        """Content of the file in a folder. Raises ArchiveError."""
 
 
 @dataclass(frozen=True)
 class TablePicture:
-    """A picture, and what it is drawn from."""
+    """A picture, and the tables that it is drawn from."""
 
     name: str
-    """Name of its file in OUT/pictures."""
+    """Name of the file in OUT/pictures."""
     needs: tuple[Readable, ...]
-    """Tables; where one is not there, the picture is none of the folder's."""
+    """Tables that it is drawn from; a folder without one of them has no such picture."""
     draw: str
     """"module:function" that takes the contents of the tables and returns the picture's. Imported when it is drawn, as
     matplotlib takes a second to import."""
 
     def is_of(self, folder: Path) -> bool:
-        """Whether the folder has all its tables."""
+        """Whether the folder has all tables that the picture is drawn from."""
         return all((folder / table.name).is_file() for table in self.needs)
 
     def drawn(self, folder: Path) -> bytes:
-        """Content of its file. Raises ArchiveError."""
+        """Content of the picture's file. Raises ArchiveError."""
         module, _, function = self.draw.partition(":")
         picture: bytes = getattr(import_module(module), function)(*(table.read(folder) for table in self.needs))
         return picture
 
 
 def from_tables(pictures: Iterable[TablePicture], folder: Path) -> Iterator[Picture]:
-    """Those of the pictures whose tables are in the folder."""
+    """The pictures whose tables are in the folder."""
     for each in pictures:
         if each.is_of(folder):
             yield Picture(each.name, partial(each.drawn, folder))

@@ -15,10 +15,10 @@ from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile, polar
 
 POINTS = 200
-"""Of a segment of a profile."""
+"""Number of points on a segment of a profile."""
 COLOURS = PINION, WHEEL
 TEXT_HEIGHT = 0.045
-"""Of a label, over the height of the axes."""
+"""Height of a label over that of the axes."""
 
 
 def tooth_form_picture(title: str, pair: GearPair) -> bytes:
@@ -101,7 +101,8 @@ def _upright(points: Floats) -> Floats:
 
 
 def _draw_diameters(axes: Axes, diameters: dict[str, float], width: float) -> None:
-    """Arcs of those in the picture, and their names at the right, moved apart where they would cover each other."""
+    """Draws arcs of the diameters in the picture, and their names at the right, moved apart where they would cover each
+    other."""
     bottom, top = axes.get_ylim()
     step = TEXT_HEIGHT * (top - bottom)
     free = np.inf

@@ -1,4 +1,4 @@
-"""What a curve, and a figure of it, are off by: from the same curve on elements of twice the size.
+"""Errors of a curve and of its figures, estimated from the same curve on elements of twice the size.
 
 Figures on two meshes may agree by chance where their curves do not. The difference D of a figure is therefore the
 larger of |Q_1 − Q_2| and of |Q_1| times the relative root mean square difference of the curves. Its error is a factor
@@ -21,15 +21,15 @@ Reduction = Callable[[Floats], float]
 STIFFNESS: Mapping[int, float] = {1: 2.0, 2: 0.5}
 """Order of the cells -> 1/(2^p − 1) for deflections: transmission error and stiffness; p = 0.6 and 1.6."""
 SHARING: Mapping[int, float] = {1: 2.0, 2: 1.0}
-"""The same for what depends on how teeth and slices of a contact share the load and on when teeth come into contact:
-loads, pressures by them, loss, mesh force, peak-to-peak values and harmonics; p = 0.6 and 1. With 1 at order 1, 3 of 24
-bars of pressures were too small, by 2 %; with 0.5 at order 2, a quarter of those of He's pair that vary over the pitch.
-"""
+"""Order of the cells -> 1/(2^p − 1) for results that depend on load sharing between teeth and slices and on when teeth
+come into contact: loads, pressures by them, loss, mesh force, peak-to-peak values and harmonics; p = 0.6 and 1. With 1
+at order 1, 3 of 24 bars of pressures were too small, by 2 %; with 0.5 at order 2, a quarter of those of He's pair that
+vary over the pitch."""
 ROOT_STRESS: Mapping[int, float] = {1: 2.0, 2: 1.0 / 3.0}
-"""The same for stress at roots of twelve elements around a fillet and more; p = 0.6 and 2. How many bars hold:
-docs/strength.md."""
+"""Order of the cells -> 1/(2^p − 1) for stress at roots of twelve elements around a fillet and more; p = 0.6 and 2. How
+many bars hold: docs/strength.md."""
 DIGITS = 9
-"""Of a rotation [rad] that two curves have in common."""
+"""Decimals of a rotation [rad] that count as the same point of two curves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class Curve:
         return replace(self, values=self.values - np.mean(self.values))
 
     def at(self, angle: Floats, missing: float = np.nan) -> Curve:
-        """Its values at rotations (m,) [rad]. missing: where it has none."""
+        """The curve at rotations (m,) [rad]. missing: value at rotations where the curve has none."""
         known = by_rotation(self, self.values)
         return Curve(angle, np.array([known.get(key, missing) for key in keys(angle)]))
 
@@ -64,9 +64,9 @@ class Compared:
     """A curve beside the same curve of another solution."""
 
     own: Curve
-    """(n,) values whose errors are wanted."""
+    """Curve (n,) whose errors are wanted."""
     other: Curve
-    """Of the other solution, at some of these rotations."""
+    """Curve of the other solution, at some of these rotations."""
     factor: float = 1.0
     """Error over the difference D."""
 
@@ -110,6 +110,6 @@ def by_rotation(curve: Curve, values: Floats) -> dict[float, float]:
 
 
 def keys(angle: Floats | Iterable[float]) -> list[float]:
-    """Rotations [rad] as in `by_rotation`."""
+    """Rotations [rad], rounded as the keys of `by_rotation`."""
     rounded: list[float] = (np.round(np.asarray(angle, dtype=float), DIGITS) + 0.0).tolist()  # no -0.0
     return rounded

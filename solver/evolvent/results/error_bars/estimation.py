@@ -48,11 +48,11 @@ class Companion:
     """The coarse companion of a run: the same scene and positions on meshes of twice the element size."""
 
     run: RunData | None
-    """Its results, on rank 0; None on other ranks and where its solution failed."""
+    """Results of the companion, on rank 0; None on other ranks and where its solution failed."""
     failure: str
-    """Why its solution failed, as a sentence; empty where it did not."""
+    """Why the solution of the companion failed, as a sentence; empty where it did not."""
     seconds: float
-    """Wall time of its solution [s]."""
+    """Wall time of the solution [s]."""
 
 
 def with_errors(run: RunData, archive: Archive, companion: Companion | None) -> RunData:

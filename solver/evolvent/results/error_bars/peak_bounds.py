@@ -21,26 +21,27 @@ import numpy as np
 from evolvent_meshes.arrays import Floats
 
 SMOOTH = 0.75
-"""Part of the height of the intersection of two lines above the samples that a parabola with these slopes does not
-reach."""
+"""Part of the height of the intersection of two lines above the samples by which a parabola with these slopes stays
+below it."""
 INNER = 0.2
-"""Least part of an interval between a place in it and its ends."""
+"""Smallest distance of a peak from the ends of its interval, over the interval."""
 STEEP = 4.0
 """Ratio of the slopes on both sides from which on the steeper one is that of a jump."""
 ROUNDING = 1e-9
-"""Of an interval: lines that cross at a point of the curve do so there, on whichever side rounding puts it."""
+"""Tolerance of an intersection over the length of the interval: lines that intersect at a point of the curve count as
+doing so inside, on whichever side rounding puts it."""
 Samples = tuple[Floats, Floats]
 """Places (n,), ascending, and values (n,) of a sampled curve."""
 
 
 @dataclass(frozen=True)
 class PossiblePeak:
-    """Where a curve may be higher than at its points."""
+    """A peak that a curve may have between two of its points."""
 
     place: float
-    """Between two points."""
+    """Abscissa of the peak, between two points."""
     height: float
-    """Which it may reach there."""
+    """Largest value that the curve may have there."""
     width: float
     """Distance of the two points."""
 
@@ -80,8 +81,8 @@ def roundness(slope: Floats) -> Floats:
 
 
 def beside_largest(x: Floats, y: Floats) -> Iterator[PossiblePeak]:
-    """Between the largest of the points (k,) and its neighbours, as far as two points lie on either side. x: ascending.
-    """
+    """Possible peaks between the largest of the points (k,) and its neighbours, as far as two points lie on either
+    side. x: ascending."""
     largest = int(np.argmax(y))
     for i in (largest - 1, largest):
         if 1 <= i < len(y) - 2:
@@ -89,8 +90,9 @@ def beside_largest(x: Floats, y: Floats) -> Iterator[PossiblePeak]:
 
 
 def _crossing(x: Floats, y: Floats) -> PossiblePeak:
-    """Between the middle ones of four points. Where the lines do not cross there, or one of them is that of a jump: in
-    the middle, as high as the line through the higher point reaches at the other one."""
+    """Possible peak between the middle ones of four points, at the intersection of the lines through the outer pairs.
+    Where the lines do not intersect there, or one of them is that of a jump: in the middle, as high as the line through
+    the higher point reaches at the other one."""
     left, right, width = (y[1] - y[0]) / (x[1] - x[0]), (y[3] - y[2]) / (x[3] - x[2]), float(x[2] - x[1])
     part = ((y[2] - y[1]) / width - right) / (left - right) if left > right else np.inf
     crosses = -ROUNDING <= part <= 1.0 + ROUNDING

@@ -100,8 +100,9 @@ def thinned_mean(values: Floats) -> float:
 
 
 def _of_face(face: FaceLoad) -> float:
-    """Error of the face load factor. With few positions the mean load of a helical pair ripples along the face; its
-    largest value hardly depends on their number, so that thinning compares all of the curve, as between meshes."""
+    """Error of the face load factor due to the spacing of positions. With few positions the mean load of a helical pair
+    ripples along the face; its largest value hardly depends on their number, so that thinning compares all of the
+    curve, as between meshes."""
     count, load, whole = len(face.mean), face.relative(), face.factor()
     apart = []
     for kept in (every_other(count, first) for first in range(count)):

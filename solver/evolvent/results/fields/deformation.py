@@ -38,7 +38,7 @@ class DeformedTooth:
     """A loaded sector of a gear, in the sector's own frame."""
 
     gear: Member
-    """The gear."""
+    """Pinion or wheel."""
     tooth: int
     """Index of the tooth pair."""
     mesh: MeshData

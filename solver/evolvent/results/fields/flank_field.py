@@ -27,10 +27,10 @@ class FlankField:
     heights: Floats
     """(h,), heights z of the node rows, ascending [mm]."""
     distances: tuple[Floats, ...]
-    """For each row, arc lengths along the profile from the contact line to its nodes in contact, ascending and positive
+    """Arc lengths of each row, along the profile from the contact line to its nodes in contact, ascending and positive
     towards the pinion's tip [mm]; empty where none is in contact."""
     values: tuple[Floats, ...]
-    """For each row, the pressures at these distances [MPa]."""
+    """Pressures of each row at these distances [MPa]."""
 
     def at(self, distance: Floats, z: Floats) -> Floats:
         """Pressure (n, m) [MPa] at distances (n, m) from the contact line [mm] and heights z (m,) [mm] of the columns;
@@ -80,7 +80,7 @@ class Patch:
     """A rectangular grid on the exact flank of a gear's tooth 0."""
 
     gear: Member
-    """The gear."""
+    """Pinion or wheel."""
     roll_length: Floats
     """(n,), roll lengths ρ of the rows [mm]."""
     z: Floats

@@ -125,7 +125,7 @@ def _pinion_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
 
 
 def _sticking(run: RunData, result: PositionResult, tooth: int) -> Floats:
-    """1 at the flank nodes (n,) whose nearest contact point sticks, else 0."""
+    """State of friction at the flank nodes (n,): 1 where the nearest contact point sticks, else 0."""
     points, nodes = result.contact, run.flank
     here = points.tooth == tooth
     if not np.any(points.sticks[here]):

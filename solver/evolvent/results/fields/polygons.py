@@ -19,7 +19,7 @@ from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.member import Member
 
 CUTS = ("cut_low", "cut_high")
-"""Groups of facets on the cut faces between sectors."""
+"""Names of the facet groups on the cut faces between sectors."""
 FINE = {
     9: ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)),
     6: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),

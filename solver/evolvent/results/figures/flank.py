@@ -92,7 +92,7 @@ def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
 
 
 def _path(run: RunData) -> Floats:
-    """Roll distances (480,) [mm] of the envelope's map."""
+    """Roll distances (480,) of the envelope's map [mm]."""
     return np.linspace(*run.inner_path, 480)
 
 

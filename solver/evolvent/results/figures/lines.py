@@ -43,9 +43,9 @@ class Series:
     name: str
     """Name of the point."""
     cells: tuple[str, ...]
-    """Its coordinates in the table, as text."""
+    """Coordinates of the point as texts of the table."""
     values: Floats
-    """(frictions,), pressure [MPa]."""
+    """(frictions,) pressure at the point [MPa]."""
 
 
 def has_lines(run: RunData) -> bool:
@@ -101,7 +101,7 @@ def label_rows(places: Sequence[float], beside: float) -> list[int]:
 
 
 def _points_named(names: Collection[str]) -> str:
-    """Footnote with the meaning of these points."""
+    """Footnote with the meaning of the points of the path of contact."""
     meanings = "; ".join(f"{name}: {what}" for name, what in PATH_POINTS.items() if name in names)
     return f"{meanings}; in the transverse section (ISO 21771)."
 

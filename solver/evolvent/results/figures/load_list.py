@@ -16,7 +16,7 @@ PANELS = (
     ("max_pressure_MPa", "largest contact pressure [MPa]"),
     ("mesh_stiffness_N_per_mm_um", "mean tangent mesh stiffness [N/(mm·µm)]"),
 )
-"""Key of the figure and label of its axis."""
+"""Key of each figure and label of its axis."""
 
 
 def loads_picture(results: Sequence[LoadResult]) -> bytes:
@@ -67,7 +67,7 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
 
 
 def _draw_kinks(axes: Axes, results: Sequence[LoadResult], frictions: Sequence[float]) -> bool:
-    """Dotted lines of the pressure over the starts of linear reliefs; whether there are any."""
+    """Draws dotted lines of the pressure over the starts of linear reliefs; returns whether there are any."""
     for friction, colour in zip(frictions, friction_colours(frictions)):
         own = [each.row for each in results if each.row.friction == friction]
         axes.plot([row.torque_Nm for row in own], [row.kink_pressure_MPa for row in own], ":", color=colour)

@@ -1,4 +1,4 @@
-"""The picture of a load list, with what it is drawn from."""
+"""Picture of a load list, and the tables that it is drawn from."""
 
 from __future__ import annotations
 

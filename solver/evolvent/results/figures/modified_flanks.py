@@ -1,4 +1,4 @@
-"""Topography of the modified flanks: what is taken off each, and the gap that this leaves between them."""
+"""Topography of the modified flanks: depth of the modifications of each, and the gap between them."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ DEPTH_MAP = LinearSegmentedColormap.from_list(
 )
 """Sequential colours from no material removed to the most, light enough for dark words on them."""
 LEAST = 1e-3
-"""Upper end of the colour scale at least [µm]."""
+"""Smallest upper end of the colour scale [µm]."""
 SHORTEST = 0.25
 """Length of a line that has a label, over that of the map along one axis."""
 POINTS = 201
-"""Of a map, each way; odd, so that mid-face is one."""
+"""Grid points of a map along each axis; odd, so that mid-face is one."""
 
 
 def has_modifications(run: RunData) -> bool:
@@ -84,7 +84,7 @@ def _contours(axes: Axes, ξ: Floats, z: Floats, depth: Floats, top: float) -> N
 
 
 def _sentence(depths: dict[str, Floats]) -> str:
-    """The most that each map has."""
+    """Sentence on the largest depth of each map."""
     pinion, wheel, gap = (f"{float(depth.max()):.1f} µm" for depth in depths.values())
     return (
         f"Up to {pinion} are taken off the pinion's flank, up to {wheel} off the wheel's; without load the flanks are "

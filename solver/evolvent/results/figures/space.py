@@ -90,8 +90,8 @@ def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: N
 
 
 def _largest(row: PositionRow) -> str:
-    """The largest pressure of a position in words, that over the start of a linear relief apart; empty where it is not
-    known."""
+    """Largest pressure of a position in words, with that over the start of a linear relief separately; empty where it
+    is not known."""
     kink = [f"{row.kink_pressure_MPa:.0f} MPa {OVER_KINK}"] if row.kink_pressure_MPa > 0.0 else []
     where = "elsewhere" if kink else "at this position"
     peak = [f"at most {row.max_pressure_MPa:.0f} MPa {where}"] if np.isfinite(row.max_pressure_MPa) else []

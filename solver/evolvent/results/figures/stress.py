@@ -136,7 +136,7 @@ def smoothed(run: RunData, curves: Sequence[Engagement]) -> list[Engagement]:
 
 
 def _resolved(run: RunData) -> list[str]:
-    """Footnote where the mesh does not resolve the contact, else none."""
+    """Footnote where the mesh does not resolve the contact; none where it does."""
     if not few_cells_across(run):
         return []
     return [

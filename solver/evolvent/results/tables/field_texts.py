@@ -1,4 +1,4 @@
-"""What the fields of a dataclass mean: the text below each of them in its class."""
+"""Descriptions of the fields of a dataclass: the text below each of them in its class."""
 
 from __future__ import annotations
 

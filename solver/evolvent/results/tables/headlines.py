@@ -1,4 +1,4 @@
-"""The figures of a run in a line per friction coefficient, as its last words on the terminal."""
+"""Key figures of a run in words, a line for each friction coefficient, printed at its end."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FIGURES = (
     ("loss_percent", "loss", "%", 2),
     ("face_load_factor", "face load factor K_Hβ", "", 2),
 )
-"""Key in summary.json, name, unit, decimals."""
+"""Key in summary.json, name, unit and decimals of each figure."""
 UNEVEN = 1.2
 """Largest face load factor that is not printed. Pressure grows with its square root: this one is 10 % more pressure
 than of an even load, and misalignment and helix modifications deserve a look. Yang's pair, aligned and without
@@ -48,5 +48,5 @@ def figure_texts(row: Mapping[str, Any], bars: Mapping[str, float | None]) -> li
 
 
 def _said(key: str, value: float | None) -> bool:
-    """Whether a figure is printed: a known one, and the face load factor of an uneven load only."""
+    """Whether a figure is printed: if it is known, and the face load factor only of an uneven load."""
     return value is not None and not (key == "face_load_factor" and value <= UNEVEN)

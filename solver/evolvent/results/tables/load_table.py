@@ -13,7 +13,7 @@ from typing import Any
 from evolvent.results.tables.table import Table
 
 ERROR = "_error"
-"""Behind the name of a figure: its estimated error."""
+"""End of the name of a column with the estimated error of a figure."""
 
 
 @dataclass(frozen=True)
@@ -27,39 +27,41 @@ class LoadRow:
     transmission_error_mean_um: float
     """Mean of the transmission error at the positions of the pitch."""
     transmission_error_peak_to_peak_um: float
-    """As in summary.json, `frictions`, like the figures below."""
+    """Peak-to-peak transmission error, as in summary.json, `frictions`, like the figures below."""
     transmission_error_peak_to_peak_um_error: float
-    """Its estimated error, as in summary.json; NaN where the run has none."""
+    """Estimated error of the peak-to-peak transmission error, as in summary.json; NaN where the run has none."""
     max_pressure_MPa: float
     """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones and away from the
     starts of linear reliefs, as in summary.json."""
     max_pressure_MPa_error: float
-    """Its estimated error."""
+    """Estimated error of the largest contact pressure."""
     max_pressure_at_zone_end: bool
-    """As in summary.json: its value depends on where a tip-edge zone ends, and so on the mesh, which its error bar
-    leaves out."""
+    """Whether the largest contact pressure lies at the limit of a tip-edge zone, as in summary.json: its value depends
+    on where the zone ends, and so on the mesh, which its error bar leaves out."""
     kink_pressure_MPa: float
-    """As in summary.json: over the start of a linear relief, for an ideal kink; NaN where there is none."""
+    """Contact pressure over the start of a linear relief, for an ideal kink, as in summary.json; NaN where there is
+    none."""
     mean_pressure_MPa: float
-    """As in summary.json; it depends less on the mesh than the largest one, so that torques can be compared by it."""
+    """Mean contact pressure, as in summary.json; it depends less on the mesh than the largest one, so that torques can
+    be compared by it."""
     mean_pressure_MPa_error: float
-    """Its estimated error."""
+    """Estimated error of the mean contact pressure."""
     mesh_stiffness_N_per_mm_um: float
     """Tangent stiffness, mean over the pitch."""
     mesh_stiffness_N_per_mm_um_error: float
-    """Its estimated error."""
+    """Estimated error of the tangent stiffness."""
     secant_stiffness_N_per_mm_um: float
     """Secant stiffness, mean over the pitch; NaN where a flank has a chart."""
     secant_stiffness_N_per_mm_um_error: float
-    """Its estimated error."""
+    """Estimated error of the secant stiffness."""
     loss_percent: float
     """Friction work over input work of the pitch."""
     loss_percent_error: float
-    """Its estimated error."""
+    """Estimated error of the loss."""
     face_load_factor: float
     """K_Hβ of ISO 6336-1, as in summary.json."""
     face_load_factor_error: float
-    """Its estimated error."""
+    """Estimated error of the face load factor."""
     tip_edge_positions: int
     """Number of positions at which a tooth bears on a tip edge."""
     cells_across_contact_width: float
@@ -78,36 +80,37 @@ class LoadResult:
     """A run under one torque at one friction coefficient."""
 
     row: LoadRow
-    """Of the table."""
+    """Row of the run in loads.csv."""
     angle: tuple[float, ...]
-    """Of the pinion at each position [°]."""
+    """Rotation of the pinion at each position [°]."""
     transmission_error: tuple[float, ...]
-    """At each position [µm]."""
+    """Transmission error at each position [µm]."""
 
 
 @dataclass(frozen=True)
 class LoadRuns:
-    """The runs that a table of loads is of."""
+    """The runs that loads.csv was gathered from."""
 
     name: str = LOADS.name
     """Name of the table's file."""
 
     def read(self, folder: Path) -> list[LoadResult]:
-        """From their folders below that of the table, the lightest torque first. Raises ArchiveError, OSError."""
+        """The runs in folders below that of the table, the lightest torque first. Raises ArchiveError, OSError."""
         torques = [row.torque_Nm for row in LOADS.read(folder)]
         every = load_results(path for path in folder.glob(RUNS.format("*")) if (path / "summary.json").exists())
         return [each for each in every if any(math.isclose(each.row.torque_Nm, torque) for torque in torques)]
 
 
 def load_results(folders: Iterable[Path]) -> list[LoadResult]:
-    """Of finished runs, from their summary.json, the lightest torque first. Raises OSError."""
+    """Rows and transmission errors of finished runs, from their summary.json, the lightest torque first. Raises
+    OSError."""
     read = [json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in folders]
     read.sort(key=lambda summary: float(summary["scene"]["load"]["torque_Nm"]))
     return [_result(summary, row) for summary in read for row in summary["frictions"]]
 
 
 def _result(summary: Mapping[str, Any], row: Mapping[str, Any]) -> LoadResult:
-    """One of the friction coefficients of a run."""
+    """Result of a run at one of its friction coefficients."""
     positions = [each for each in summary["positions"] if each["friction"] == row["friction"]]
     keys = "pinion_angle_deg", "transmission_error_um"
     angle, error = (tuple(float(each[key]) for each in positions) for key in keys)

@@ -48,7 +48,7 @@ def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
 
 
 def _about_the_load(run: RunData) -> Iterator[str]:
-    """That the load is a mesh force, where it is one."""
+    """Note that the load is the mesh force of a vibration, where it is one."""
     given = run.scene.dynamics
     if given is not None and given.operating_rpm is not None:
         yield (

@@ -22,7 +22,7 @@ keys."""
 
 @dataclass(frozen=True)
 class RunFacts:
-    """Facts on a run beside its results."""
+    """Facts of a run beside its results."""
 
     versions: Mapping[str, str]
     """Program or library on which the results depend -> its version."""
@@ -121,7 +121,7 @@ class FrictionRow:
     half-ellipse with a slice's line load and second moment. On a spur pair it is that away from the starts of linear
     tip and root reliefs, whose contact does not cover the kink that the flank has there."""
     max_pressure_angle_deg: float
-    """Pinion rotation of the tooth at which it occurs; 0 is the pitch point at mid-face."""
+    """Pinion rotation of the tooth at its largest contact pressure; 0 is the pitch point at mid-face."""
     max_pressure_at_zone_end: bool
     """Whether it lies at the limit of a tip-edge zone, so that its value depends on the place of that limit, and so on
     the mesh, which its error bar leaves out."""
@@ -171,9 +171,9 @@ class ErrorBars:
     """Method of the error bars, or the reason why there are none."""
 
     method: str
-    """Method of their estimation; empty where there are none."""
+    """Method by which the error bars were estimated; empty where there are none."""
     missing: str | None
-    """Reason why there are none; null where there are some."""
+    """Reason why there are no error bars; null where there are some."""
 
 
 @dataclass(frozen=True)

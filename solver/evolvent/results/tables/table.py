@@ -22,7 +22,7 @@ Row = TypeVar("Row")
 MEGABYTES = 1000
 """Size of the largest file that is read [MB]."""
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r", "'")
-"""How cells begin that spreadsheets take for formulas, and the apostrophe that says they are none."""
+"""Beginnings of cells that spreadsheets take for formulas, and the apostrophe that marks such a cell as text."""
 TRUTHS = {True: True, False: False, "True": True, "False": False}
 """Truth value as in JSON, or cell of a CSV file -> truth value."""
 
@@ -32,9 +32,9 @@ class Table(Generic[Row]):
     """A file of rows: a line each of a CSV file, or an entry each of a JSON list."""
 
     name: str
-    """Name of the file; its ending says which of both it is."""
+    """Name of the file; its ending gives the format."""
     row: type[Row]
-    """Dataclass of a row."""
+    """Dataclass of the rows."""
 
     def write(self, folder: RunFolder, rows: Iterable[Row]) -> None:
         """Writes the file; none where there are no rows. Raises WriteError, FolderError."""
@@ -49,7 +49,7 @@ class Table(Generic[Row]):
         return _read(folder / self.name, self.row)
 
     def described(self) -> dict[str, str]:
-        """Column -> what it means."""
+        """Column -> meaning."""
         return field_texts(self.row)
 
     @property
@@ -67,7 +67,7 @@ class Record(Generic[Row]):
     name: str
     """Name of the file."""
     row: type[Row]
-    """Dataclass of the object."""
+    """Dataclass of the content."""
 
     def write(self, folder: RunFolder, content: Row) -> None:
         """Writes the file. Raises WriteError, FolderError."""
@@ -78,7 +78,7 @@ class Record(Generic[Row]):
         return _read(folder / self.name, self.row)[0]
 
     def described(self) -> dict[str, str]:
-        """Key -> what it means."""
+        """Key -> meaning."""
         return field_texts(self.row)
 
 
@@ -89,7 +89,7 @@ class SceneValue:
     name: str
     """Name of the scene's file."""
     key: str
-    """Dotted key."""
+    """Dotted key of the scene."""
 
     def read(self, folder: Path) -> Any:
         """The value; None where the scene has none. Raises ArchiveError for a file that is no TOML."""
@@ -135,8 +135,8 @@ def json_text(value: object) -> str:
 
 
 def _cell(value: object) -> object:
-    """A number with nine digits, enough for reading and for comparing two runs; behind an apostrophe a text that a
-    spreadsheet would compute, or that begins with an apostrophe itself."""
+    """Text of a value in a cell: a number with nine digits, enough for reading and for comparing two runs; behind an
+    apostrophe a text that a spreadsheet would compute, or that begins with an apostrophe itself."""
     if isinstance(value, float):
         return f"{value:.9g}"
     is_formula = isinstance(value, str) and value.startswith(FORMULA_STARTS) and not _is_number(value)
@@ -166,7 +166,7 @@ def without_nan(value: object) -> object:
 
 
 def _read(path: Path, kind: type[Row]) -> list[Row]:
-    """At least one row. Raises ArchiveError."""
+    """Rows of a file, at least one. Raises ArchiveError."""
     try:
         text = read_text(path, path.suffix[1:].upper(), MEGABYTES)
         content = csv_rows(text) if path.suffix == ".csv" else json.loads(text)

@@ -69,8 +69,8 @@ def run_excitation(
 def writing_results(
     out: Path, written: Sequence[str], comm: MPI.Comm, resume: bool, overwrite: bool
 ) -> AbstractContextManager[list[str]]:
-    """Context in which no other run writes to the folder. Gives a sentence where there is nothing to go on from.
-    Collective. written: names of what is written in the end.
+    """Context in which no other run writes to the folder. Gives a sentence where there is nothing to resume.
+    Collective. written: names of all files that the command writes.
 
     Raises FolderError where files of others would be lost, or results unasked.
     """
@@ -85,7 +85,8 @@ def computed_excitation(
     loads: SceneTorques, comm: MPI.Comm, progress: Progress, kept: KeptPositions | None = None,
     prepare: Preparer = prepare_model,
 ) -> MeshExcitation:
-    """Of the scene's gears under each torque. kept: positions on disk. prepare: see `run_excitation`. Collective."""
+    """Excitation of the scene's gears under each torque. kept: positions on disk. prepare: as of `run_excitation`.
+    Collective."""
     problem = loads.problem
     angles = np.array(uniform_pitch(problem.pair.pinion.z, loads.scene.sweep.positions).angles)
     loaded = loaded_pitch(loads, angles, run_mesh, comm, progress, POSITIONS, kept, prepare)
@@ -96,8 +97,8 @@ def companion_of(
     excitation: MeshExcitation, loads: SceneTorques, comm: MPI.Comm, progress: Progress,
     kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
 ) -> CoarseExcitation:
-    """The same positions and torques on elements of twice the size, where the scene asks for error bars; an error of
-    meshing or solving becomes its `failure`, see `attempted`. Collective."""
+    """Excitation at the same positions and torques on elements of twice the size, where the scene asks for error bars;
+    an error of meshing or solving becomes its `failure`, see `attempted`. Collective."""
     if not wanted_output(loads.scene).error_bars:
         return NO_COMPANION
 
@@ -153,7 +154,7 @@ def loaded_pitch(
 def _written(
     folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques
 ) -> list[str]:
-    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    """Writes all files, in place of those of an earlier call. On rank 0 alone."""
     folder.remove(OF_DYNAMICS)
     return write_excitation(folder, excitation, companion, loads)
 

@@ -1,5 +1,5 @@
-"""Positions of an excitation on disk: a call that was stopped goes on from them, and other speeds, dampers or inertias
-need no contact to be solved.
+"""Positions of an excitation on disk. A call that was stopped resumes from them, and for other speeds, dampers or
+inertias no contact is solved again.
 
     OUT/results/excitation.npz          on the meshes of the scene
     OUT/results/excitation_coarse.npz   on those of the companion that gives the error bars
@@ -24,24 +24,24 @@ from evolvent_meshes.arrays import Floats
 
 KEPT, KEPT_COARSE = "results/excitation.npz", "results/excitation_coarse.npz"
 DEFLECTED = ".npz", "_deflected.npz"
-"""End of these names, and what it is on deflected flanks."""
+"""End of the names of these files, and its replacement for positions on deflected flanks."""
 KEPT_DEFLECTED = KEPT.replace(*DEFLECTED), KEPT_COARSE.replace(*DEFLECTED)
 
 
 @dataclass(frozen=True)
 class KeptPositions:
-    """The solved positions of one kind of meshes. Only rank 0 reads and writes them."""
+    """Archived positions of an excitation on one kind of meshes. Only rank 0 reads and writes them."""
 
     store: Store
-    """Files of the call, with the identity of the gears, their torques and positions, see `identity`."""
+    """Files of the call, with the identity of the gears, their torques and positions (`identity`)."""
     name: str
-    """File below OUT."""
+    """Name of the file below OUT."""
     resume: bool
-    """Whether the call goes on from those of an earlier one."""
+    """Whether the call continues from the positions of an earlier one."""
 
     @property
     def deflected(self) -> KeptPositions:
-        """The same gears, torques and positions on deflected flanks."""
+        """Positions of these gears and torques on deflected flanks."""
         return replace(self, name=self.name.replace(*DEFLECTED))
 
     def read(self) -> dict[int, Floats]:
@@ -50,7 +50,8 @@ class KeptPositions:
         return (self.store.read(self.name, self._figures) or {}) if self.resume else {}
 
     def _figures(self, arrays: Arrays) -> dict[int, Floats]:
-        """Raises ArchiveError where the arrays are not those of positions."""
+        """Figures of the positions in archived arrays, by the number of the position. Raises ArchiveError where the
+        arrays hold others."""
         numbers, figures = arrays.get("numbers", np.zeros(0)), arrays.get("figures", np.zeros(0))
         fits = figures.shape == (*numbers.shape, *figures.shape[1:2], COLUMNS)
         if numbers.dtype.kind != "i" or figures.dtype.kind != "f" or not fits:
@@ -61,7 +62,7 @@ class KeptPositions:
         return {int(number): each for number, each in zip(numbers, figures)}
 
     def write(self, found: Mapping[int, Floats]) -> None:
-        """Keeps positions, see `read`. Raises WriteError, FolderError."""
+        """Archives positions, as `read` returns them. Raises WriteError, FolderError."""
         numbers = sorted(found)
         self.store.write(self.name, {"numbers": numbers, "figures": np.array([found[i] for i in numbers])})
 
@@ -73,7 +74,7 @@ def kept_positions(loads: SceneTorques, out: Path, resume: bool) -> tuple[KeptPo
 
 
 def another(path: Path) -> str:
-    """Message on positions of another scene."""
+    """Message on archived positions of another scene."""
     return (
         f"{path}: wanted positions of this scene, found those of other gears, meshes, torques or positions (what "
         "follows on the excitation may differ); --resume goes on with the scene and the torques that it was called "
@@ -82,8 +83,8 @@ def another(path: Path) -> str:
 
 
 def identity(loads: SceneTorques) -> str:
-    """SHA-256 of all that the excitation of gears under some torques depends on: neither friction nor what is done with
-    the excitation."""
+    """SHA-256 of all that the excitation of gears under some torques depends on: neither friction nor the use of the
+    excitation."""
     scene = loads.scene
     smooth = scene.contact.model_copy(update={"friction": (0.0,)})
     bare = scene.model_copy(update={"dynamics": None, "contact": smooth})

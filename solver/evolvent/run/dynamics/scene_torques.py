@@ -30,28 +30,28 @@ torque on, at standard from 2 %."""
 
 @dataclass(frozen=True)
 class SceneTorques:
-    """A scene and the torques that it is solved under."""
+    """A scene and the torques under which its excitation is computed."""
 
     scene: Scene
-    """Without wear, under the torque that the meshes are sized for."""
+    """Scene without wear, under the torque that the meshes are sized for."""
     torques: tuple[float, ...]
-    """Ascending [N·mm]."""
+    """(m,) torques, ascending [N·mm]."""
 
     @cached_property
     def problem(self) -> GearProblem:
-        """Of the scene, on flanks that are long enough for the heaviest torque."""
+        """Gear problem of the scene, on flanks that are long enough for the heaviest torque."""
         own = gear_problem(self.scene)
         lightest, heaviest = own.mesh_torques or (own.torque, own.torque)
         return replace(own, mesh_torques=(lightest, max(heaviest, self.torques[-1])))
 
     @property
     def base_radius(self) -> float:
-        """Of the gear with the torque [mm]."""
+        """Base radius of the gear that the torque acts on [mm]."""
         return self.problem.pair.gears[self.problem.torque_on].base_radius
 
     @property
     def forces(self) -> Floats:
-        """(m,) along the line of action [N]."""
+        """(m,) mesh forces along the line of action [N]."""
         return np.array(self.torques) / self.base_radius
 
     @property

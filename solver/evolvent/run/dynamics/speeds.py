@@ -12,11 +12,11 @@ from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.arrays import Floats
 
 FROM, TO = 1.0 / 6.0, 1.6
-"""Speeds that are swept by default, over the natural one."""
+"""Lowest and highest speed that are swept by default, over the natural one."""
 WAYS = 2
-"""Motions that are computed at a speed: running up and running down."""
+"""Number of motions that are computed at a speed: running up and running down."""
 SAME_SPEED = 1e-9
-"""Part by which speeds differ that are one."""
+"""Relative difference below which two speeds count as one."""
 
 
 def sweep_list(natural_speed: float, section: DynamicsSection) -> Floats:
@@ -43,6 +43,6 @@ def sweep_at(pair: Drive, speeds: Floats, computed: Callable[[], None] = lambda:
 
 
 def _even(natural_speed: float, section: DynamicsSection, count: int) -> Floats:
-    """So many speeds of the section's range."""
+    """Evenly spaced speeds (count,) over the range of the section [r/min]."""
     low, high = section.speed_rpm or (FROM * natural_speed, TO * natural_speed)
     return np.linspace(low, high, count)

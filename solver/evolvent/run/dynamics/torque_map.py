@@ -16,12 +16,12 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class TorqueMap:
-    """What was computed of a map."""
+    """Rows of torque_map.csv, and warnings on them."""
 
     rows: tuple[MapRow, ...]
-    """Under the lightest torque first."""
+    """Rows of the map, those of the lightest torque first."""
     warnings: tuple[str, ...]
-    """What a reader of them has to know."""
+    """Warnings on the rows, a sentence each."""
 
 
 def torque_map(
@@ -54,7 +54,8 @@ def torque_map(
 
 
 def _beyond(rows: Sequence[MapRow], heaviest: float) -> list[str]:
-    """Torques under which the mesh force leaves the force surface. heaviest: of its torques [N]."""
+    """Warning of torques under which the mesh force leaves the force surface. heaviest: load of its heaviest torque
+    [N]."""
     shares: dict[float, float] = {}
     for row in rows:
         shares[row.torque_Nm] = max(row.largest_force_N / heaviest, shares.get(row.torque_Nm, 0.0))

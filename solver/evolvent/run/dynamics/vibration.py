@@ -90,7 +90,7 @@ def run_dynamics(
 
 
 def accuracy(section: DynamicsSection) -> Accuracy:
-    """What the section says for K_v of ISO 6336-1."""
+    """Gear accuracy for K_v of ISO 6336-1, as the section [dynamics] gives it."""
     return Accuracy(
         section.base_pitch_deviation_um, section.profile_deviation_um, section.tolerance_class, section.flank_surface,
         section.contact_endurance_MPa,
@@ -101,7 +101,7 @@ def _written(
     excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques, section: DynamicsSection,
     settings: DriveSettings, out: Path, progress: Progress,
 ) -> list[str]:
-    """Sweeps the speeds and writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    """Sweeps the speeds and writes all files, in place of those of an earlier call. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), loads.problem
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
@@ -139,7 +139,8 @@ def _over_torque(
     excitation: MeshExcitation, problem: GearProblem, vibrating: Drive, settings: DriveSettings,
     section: DynamicsSection, progress: Progress,
 ) -> TorqueMap:
-    """The section's map; without any rows where it wants none. vibrating: under the scene's torque."""
+    """The map over torque and speed; without rows where the section asks for none. vibrating: under the scene's torque.
+    """
     loads = [vibrating.model.load * percent / 100.0 for percent in section.map_percents]
     if loads:
         progress.stage(MAP, len(loads))
@@ -152,7 +153,8 @@ def _over_torque(
 def _warnings(
     vibrating: Drive, settings: DriveSettings, known: DriveSummary, swept: SpeedSweep
 ) -> list[str]:
-    """What a reader of the results has to know."""
+    """Warnings on the elastic bodies, a backlash below the static deflection, and mesh forces above that of the
+    heaviest torque."""
     found, deflection = [], vibrating.model.load / vibrating.mean_stiffness
     found += bodies_said(vibrating, *(speed_of(vibrating, float(swept.periods[end])) for end in (0, -1)))
     if settings.backlash < deflection:
@@ -170,7 +172,7 @@ def _warnings(
 
 
 def _not_followed(vibrating: Drive, swept: SpeedSweep) -> list[str]:
-    """Where the branch of steady states ends, and motions that have no end."""
+    """Warnings of interrupted branches of steady states, and of motions that grow without limit."""
     found, branch = [], swept.branch
     if branch.gaps or branch.lost:
         ends = [branch.points[i].period for gap in branch.gaps for i in (gap, gap + 1)]
@@ -191,7 +193,7 @@ def _not_followed(vibrating: Drive, swept: SpeedSweep) -> list[str]:
 
 
 def _branch_warnings(swept: SpeedSweep) -> list[str]:
-    """Steady states whose branch was not found."""
+    """Warning of steady states that lie on no branch which was followed."""
     apart = sum(run.place is None and run.repeats == 1 for run in (*swept.up, *swept.down))
     if not apart:
         return []
@@ -203,7 +205,7 @@ def _branch_warnings(swept: SpeedSweep) -> list[str]:
 
 
 def _not_repeating(vibrating: Drive, swept: SpeedSweep) -> list[str]:
-    """Motions whose largest force a longer look may find larger."""
+    """Warning of motions that do not repeat, so that their largest force over a longer time may be larger."""
     wild = [float(period) for runs in (swept.up, swept.down) for period, run in zip(swept.periods, runs)
             if run.repeats == 0 and not run.escaped]
     if not wild:
@@ -216,7 +218,8 @@ def _not_repeating(vibrating: Drive, swept: SpeedSweep) -> list[str]:
 
 
 def _iso_warnings(problem: GearProblem, iso: MethodB) -> list[str]:
-    """What K_v of ISO 6336-1 wants, and what of the gears it is not made for or does not see."""
+    """Warnings on K_v of ISO 6336-1: accuracy that is not given, gears outside its range, and flank charts, which it
+    leaves out."""
     if not iso.has_factor:
         given = {
             "dynamics.base_pitch_deviation_um": iso.accuracy.base_pitch_deviation,

@@ -1,4 +1,4 @@
-"""The vibration on other excitations, for its error bars: that of the coarse companion, and every other position."""
+"""Vibration on other excitations, for its error bars: on that of the coarse companion, and on every other position."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from evolvent_meshes.errors import EvolventError
 
 COARSE, THINNED = "on elements of twice the size", "on every other position from the {} on"
 SWEEPS = 3
-"""Of all speeds, on other excitations."""
+"""Number of sweeps over all speeds on other excitations."""
 FINER = "A finer mesh tells (mesh.level)"
 CLOSER = "More positions tell (sweep.positions)"
 
 
 def vibration_of(pair: Drive, swept: SpeedSweep) -> Vibration:
-    """What is compared of a sweep."""
+    """Responses and jumps of a sweep, which the error bars compare."""
     ways = {"up": jumps(pair, swept.up), "down": jumps(pair, swept.down[::-1])}
     return Vibration(pair, responses(pair, swept), ways)
 
@@ -48,8 +48,8 @@ def errors_over_speed(
     speeds: Floats,
     computed: Callable[[], None] = lambda: None,
 ) -> VibrationErrors:
-    """Error bars of a pair's vibration at ascending speeds (n,) [r/min]; unknown where the companion has no excitation,
-    or a sweep fails: that is said, and results are not lost for it.
+    """Error bars of a pair's vibration at ascending speeds (n,) [r/min]. They are unknown where the companion has no
+    excitation or a sweep fails: a sentence names the reason, and the results remain.
 
     own: on `excitation`, under the load that counts.
     problem: its pair.
@@ -70,7 +70,7 @@ def errors_over_speed(
 def _excitations(
     excitation: MeshExcitation, companion: CoarseExcitation
 ) -> Iterator[tuple[OtherVibration, MeshExcitation]]:
-    """Those that are wanted, with what will be said of the vibration on them."""
+    """The excitations that the pair is compared on, each with a name for messages."""
     if companion.excitation is None:
         return
     yield OtherVibration(COARSE, FINER, SHARING[companion.order], None), companion.excitation
@@ -82,7 +82,7 @@ def _swept(
     name: OtherVibration, excitation: MeshExcitation, pair_on: Callable[[MeshExcitation], Drive], speeds: Floats,
     computed: Callable[[], None],
 ) -> OtherVibration:
-    """With its vibration, or why there is none."""
+    """Vibration on another excitation, or the reason why there is none."""
     try:
         pair = pair_on(excitation)
         return replace(name, vibration=vibration_of(pair, sweep_at(pair, speeds, computed)))
@@ -91,7 +91,7 @@ def _swept(
 
 
 def _without_spacing(excitation: MeshExcitation) -> list[str]:
-    """Where the positions cannot be halved."""
+    """Warning of error bars without the part of the spacing of positions, where the positions cannot be halved."""
     if halves(excitation):
         return []
     return [

@@ -1,4 +1,4 @@
-"""Names of what `evolvent excitation` and `evolvent dynamics` write below OUT."""
+"""Names of the files that `evolvent excitation` and `evolvent dynamics` write below OUT."""
 
 from __future__ import annotations
 
@@ -15,4 +15,5 @@ OF_DYNAMICS = (
     *OF_EXCITATION, *(table.name for table in (RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES, TORQUE_MAP)),
     *(f"pictures/{picture.name}" for picture in VIBRATION_PICTURES),
 )
-"""What `evolvent dynamics` writes; an excitation that is computed anew removes it, as it belongs to another one."""
+"""Files that `evolvent dynamics` writes. An excitation that is computed anew removes them, as they belong to another
+one."""

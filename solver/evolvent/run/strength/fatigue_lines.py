@@ -1,4 +1,4 @@
-"""What a reader looks for first in fatigue.csv, a line a friction coefficient."""
+"""Key figures of fatigue.csv in words, a line for each friction coefficient."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ SHOWN = (
     (MAXIMUM_SHEAR, BELOW, "maximum shear stress"),
     *((DANG_VAN, place, "Dang Van") for place in (*NEAR_SURFACE, BELOW)),
 )
-"""Criterion, place, name."""
+"""Criterion, place and name of each value that is printed."""
 FLAGS = {
     "at_zone_end": "beside the zone of a tip edge",
     "near_friction_reversal": "where friction reverses, so that the stress history does not hold",
     "at_depth_limit": "no maximum over the depth, at the first or last one from 0.2 half-widths down",
 }
-"""Column that says where a value does not hold -> words."""
+"""Column that marks values which do not hold -> words."""
 NOTHING = (
     "nothing evaluated: wanted contact between the tip-edge zones, found none at these positions; take more of them "
     "(sweep.positions), or a pair with a longer path of contact"
@@ -49,14 +49,15 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
 
 
 def _with_flags(row: FatigueRow, first: FatigueRow | None) -> FatigueRow:
-    """A row with the flags of the point that is printed: where it is that of the first coefficient, of its row."""
+    """A row with the flags of the point that is printed: those of the first coefficient's row where it is that row's
+    point."""
     if first is None or not _at_point(row, changed=True):
         return row
     return replace(row, at_zone_end=first.at_zone_end, near_friction_reversal=first.near_friction_reversal)
 
 
 def _named(name: str, row: FatigueRow, changed: bool) -> str:
-    """With the depth, where a criterion has one. changed: see `_value`."""
+    """Name of a value with its depth, where its criterion has one. changed: as of `_value`."""
     if row.criterion == CONTACT_PRESSURE.name:
         return name
     depth = row.point_depth_um if _at_point(row, changed) else row.depth_um
@@ -64,8 +65,8 @@ def _named(name: str, row: FatigueRow, changed: bool) -> str:
 
 
 def _value(row: FatigueRow, changed: bool) -> str:
-    """With its error bar. changed: at the point of the flank where it is largest at the first coefficient, with its
-    change there and in the median over points, where they are known."""
+    """A value with its error bar. changed: print the value at the point of the flank where it is largest at the first
+    coefficient, with its change there and in the median over points, where they are known."""
     at_point = _at_point(row, changed)
     value = plus_minus(row.point_value if at_point else row.value, row.value_error, 0)
     there = [f"{row.change_percent:+.1f} % at this point"] if at_point else []
@@ -80,7 +81,7 @@ def _at_point(row: FatigueRow, changed: bool) -> bool:
 
 
 def _flags(shown: Sequence[tuple[str, FatigueRow]], changed: bool) -> Iterator[str]:
-    """Which values lie where they do not hold. changed: see `_value`."""
+    """Notes on values that do not hold where they lie. changed: as of `_value`."""
     for column, words in FLAGS.items():
         flagged = [_named(name, row, changed) for name, row in shown if getattr(row, column)]
         if flagged:

@@ -36,7 +36,7 @@ from evolvent.strength.results.friction_fatigue import FrictionFatigue
 from evolvent.strength.results.pictures import FATIGUE_PICTURE, FATIGUE_SCENE
 
 AT_END = 1e-6
-"""A zone that begins so near [mm] to the end of the path of contact is none."""
+"""Tip-edge zones shorter than this [mm] are ignored."""
 TABLES = FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH, FATIGUE_SECTION, FATIGUE_FACTS
 WRITTEN = FATIGUE_SCENE.name, *(table.name for table in TABLES), f"pictures/{FATIGUE_PICTURE.name}"
 
@@ -44,7 +44,7 @@ WRITTEN = FATIGUE_SCENE.name, *(table.name for table in TABLES), f"pictures/{FAT
 def run_fatigue(
     scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False, prepare: Preparer = prepare_model
 ) -> list[str]:
-    """Computes the pitch and what it does to the flanks, and writes scene, tables and picture to `out`. Returns a
+    """Computes the pitch and the fatigue of the flanks, and writes scene, tables and picture to `out`. Returns a
     sentence where a picture could not be drawn, error bars not be estimated, or figures do not hold. Collective.
 
     scene: its wear is left out. overwrite: replace what an earlier call has written. prepare: prepares gears that other
@@ -76,7 +76,7 @@ def run_fatigue(
 def _solved(
     scene: Scene, comm: MPI.Comm, progress: Progress, prepare: Preparer
 ) -> tuple[Scene, RunData | None]:
-    """The scene that asks for the flanks that its pitch needs, and the pitch, on rank 0. Collective."""
+    """The scene, on deflected flanks if its pitch needs them, and the run of the pitch on rank 0. Collective."""
     progress.stage(MESHING)
     model = prepare(gear_problem(scene), comm, meshed=lambda: progress.stage(CONDENSING)).model
     pitch = pitch_of(scene)
@@ -86,14 +86,14 @@ def _solved(
 
 
 def _positions(run: RunData, index: int) -> list[LoadedPosition]:
-    """At the friction coefficient with this index."""
+    """Loaded positions of the pitch at the friction coefficient with this index."""
     return [
         LoadedPosition(k, each[index].result, each[index].cut, run.flank.z) for k, each in enumerate(run.positions)
     ]
 
 
 def _fatigue(run: RunData, index: int, error: float, coarse: RunData | None) -> FrictionFatigue:
-    """error: of the largest pressure [MPa]."""
+    """Fatigue of both flanks at the friction coefficient with this index. error: of the largest pressure [MPa]."""
     gears = _flanks(run, index, run.inner_path)
     ends = tuple(x for x, end in zip(run.inner_path, run.pair.path_of_contact) if abs(x - end) > AT_END)
     largest = float(gears[0].loads.peak.max(initial=0.0)) or float("nan")
@@ -102,7 +102,7 @@ def _fatigue(run: RunData, index: int, error: float, coarse: RunData | None) -> 
 
 
 def _flanks(run: RunData, index: int, inner: tuple[float, float]) -> tuple[FlankFatigue, FlankFatigue]:
-    """Of pinion and wheel. inner: roll distances [mm] between the tip-edge zones."""
+    """Fatigue of the flanks of pinion and wheel. inner: roll distances [mm] between the tip-edge zones."""
     section, friction = run.scene.fatigue or FatigueSection(), run.frictions[index]
     loads = FlankLoads.joined([each.loads(inner) for each in _positions(run, index)])
     pinion, wheel = _materials(run)
@@ -124,7 +124,7 @@ def _materials(run: RunData) -> tuple[FatigueMaterial, FatigueMaterial]:
 
 
 def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out: Path) -> list[str]:
-    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    """Writes all files, in place of those of an earlier call. On rank 0 alone."""
     section = run.scene.fatigue or FatigueSection()
     found = [_fatigue(run, k, errors.bar("max_pressure_MPa", k), coarse) for k in range(len(run.frictions))]
     facts = [

@@ -30,9 +30,9 @@ class PitchRoots:
     spur gear is loaded at its outer point of single or double contact."""
 
     angles: tuple[float, ...]
-    """Pinion rotations beyond the uniform ones [rad]."""
+    """Pinion rotations beyond those of uniform spacing [rad]."""
     roots: Roots
-    """Of both gears at each friction coefficient."""
+    """Root stresses of both gears at each friction coefficient."""
     deflected: bool
     """Whether contact was searched again on deflected flanks."""
 
@@ -47,7 +47,7 @@ def pitch_roots(
     scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
     angles: Sequence[float] | None = None, prepare: Preparer = prepare_model,
 ) -> PitchRoots:
-    """Of both gears at each friction coefficient. Collective.
+    """Root stresses of both gears over a pitch at each friction coefficient. Collective.
 
     mesh: of `root_meshes`. stage: of the progress, for the positions. angles: beyond the uniform ones; None: see
     `PitchRoots`. prepare: prepares gears that other calls share.

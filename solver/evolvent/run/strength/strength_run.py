@@ -46,7 +46,7 @@ WRITTEN = (
     STRENGTH_SCENE.name, STRENGTH.name, ROOT_STRESS.name, GAUGES.name, f"pictures/{ROOT_STRESS_PICTURE.name}",
 )
 NO_DEEP_TEETH = 12
-"""Tolerance class that is taken where the scene names none: Y_DT is 1."""
+"""Tolerance class where the scene gives none: Y_DT is 1."""
 
 
 def run_strength(
@@ -83,8 +83,8 @@ def run_strength(
 
 
 def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:
-    """What loads the roots of pinion and wheel. Raises InputError where the standard's formulas do not hold for them.
-    """
+    """Loads of the roots of pinion and wheel for the standard. Raises InputError where its formulas do not hold for
+    them."""
     problem, section = gear_problem(scene), scene.strength or StrengthSection()
     pinion, wheel = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)
     for load in (pinion, wheel):
@@ -123,7 +123,7 @@ def _by_friction(scene: Scene, fine: Roots, coarse: Roots | None) -> list[Fricti
 
 
 def _written(scene: Scene, loads: Sequence[RootLoad], found: Sequence[FrictionRoots], out: Path) -> list[str]:
-    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    """Writes all files, in place of those of an earlier call. On rank 0 alone."""
     section = scene.strength or StrengthSection()
     tolerance = section.tolerance_class or NO_DEEP_TEETH
     rows = [row for load in loads for row in strength_rows(load, found, section.editions, tolerance)]

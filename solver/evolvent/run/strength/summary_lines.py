@@ -1,4 +1,4 @@
-"""What a reader looks for first in strength.csv, a line a gear."""
+"""Key figures of strength.csv in words, a line for each gear."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Worker processes on this machine: started here, reached by a pair of connected sockets without an address each."""
+"""Worker processes on this machine: started here, each reached by a pair of connected sockets without an address."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from evolvent_meshes.errors import EvolventError
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 STARTS = 10
-"""Largest number of worker processes that end one after the other while they start."""
+"""Largest number of worker processes in a row that may end while they start."""
 GRACE = 5.0
-"""Time that a worker without work has to end by itself [s]."""
+"""Time [s] that an idle worker process has to end by itself."""
 
 
 class WorkersDie(EvolventError):
-    """Worker processes end before they can compute anything."""
+    """Worker processes ended before they could compute anything."""
 
 
 class LocalWorkers:
-    """Worker processes, each of which computes one scene at a time on one core, and is replaced where it dies. None
-    outlives this process. count: how many there are at most; there are no more than tasks."""
+    """Worker processes, each of which computes one scene at a time on one core, and is replaced where it ends
+    unexpectedly. None outlives this process. count: largest number of processes; there are no more than tasks."""
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -41,7 +41,7 @@ class LocalWorkers:
         self._failed_starts = 0
 
     def finished(self, tasks: Mapping[SceneTask, str]) -> Iterator[SceneRecord]:
-        """See `SceneWorkers`. Raises WorkersDie, OSError."""
+        """Records of the scenes as they are computed, in any order; see `SceneWorkers`. Raises WorkersDie, OSError."""
         self._groups.extend(_Group(each, self._count > 1) for each in sharing(tasks))
         count = min(self._count, sum(len(each.solving) for each in self._groups))
         for _ in range(count):
@@ -62,20 +62,20 @@ class LocalWorkers:
             worker.ended()
 
     def _is_unfinished(self) -> bool:
-        """Whether a scene is to be handed out, or computed by a worker. Groups without such scenes go."""
+        """Whether a scene is to be handed out, or is being computed by a worker. Removes groups without such scenes."""
         while self._groups and not self._groups[0].solving:
             self._groups.popleft()
         return bool(self._groups) or any(each.order is not None for each in self._workers)
 
     def _occupy(self, worker: _Worker) -> None:
-        """Gives a worker what it can do, first on the gears that it keeps."""
+        """Gives a worker its next order, first on the gears that it holds."""
         for group in ([worker.keeps] if worker.keeps is not None else []) + list(self._groups):
             if (order := group.next_for(worker.keeps is group)) is not None:
                 worker.give(order, group)
                 return
 
     def _hear(self, worker: _Worker) -> list[SceneRecord]:
-        """Records that a worker sends, or that follow from its death. Raises WorkersDie."""
+        """Records that a worker sends, or those of scenes given up as it ended unexpectedly. Raises WorkersDie."""
         try:
             answer = worker.connection.recv()
         except (EOFError, OSError):
@@ -93,7 +93,7 @@ class LocalWorkers:
         return []
 
     def _replaced(self, worker: _Worker) -> list[SceneRecord]:
-        """Another worker takes the place of one that has died; its order is tried again, but for the fourth time."""
+        """Replaces a worker process that has ended unexpectedly. Its order is tried again up to three times."""
         worker.close()
         how = worker.ended()
         self._workers.remove(worker)
@@ -115,7 +115,7 @@ class LocalWorkers:
 
 
 class _Worker:
-    """A worker process, with what it does."""
+    """A worker process and its present order."""
 
     def __init__(self) -> None:
         self.connection, theirs = Pipe()
@@ -128,16 +128,16 @@ class _Worker:
                 pass_fds=[theirs.fileno()], process_group=0,  # Control-C is for this process
             )
         self.is_ready = False
-        """Whether it has started."""
+        """Whether the process has started."""
         self.order: Order | None = None
-        """That it carries out."""
+        """Order that the process is carrying out."""
         self.group: _Group | None = None
-        """Of the order's scenes."""
+        """Scenes that the order belongs to."""
         self.keeps: _Group | None = None
-        """Whose gears it has."""
+        """Scenes whose condensed gears the process holds."""
 
     def give(self, order: Order, group: _Group) -> None:
-        """Sends an order; if the worker has died, the connection tells so next."""
+        """Sends an order. That the process has ended shows when its connection is read next."""
         self.order, self.group = order, group
         if not isinstance(order, Solve) or not order.on_kept_gears:
             self.keeps = None
@@ -161,15 +161,15 @@ class _Worker:
 
 
 class _Group:
-    """Scenes that share gears, or a single one, as far as they are not handed out."""
+    """Scenes that share gears, or a single one, without those that were handed out."""
 
     def __init__(self, tasks: Line, several_workers: bool) -> None:
         self._shares = len(tasks) > 1
         self.solving = deque(Solve(line, self._shares) for line in lines(tasks))
-        """Orders to come."""
+        """Orders that are still to be handed out."""
         self._condense = Condense(tasks, several_workers and len(self.solving) > 1)
         self._keep: Keep | None = None
-        """The condensed gears for other workers."""
+        """Order for other workers to hold the condensed gears."""
         self._is_condensing = False
 
     def next_for(self, keeps_gears: bool) -> Order | None:
@@ -187,13 +187,13 @@ class _Group:
         return self._condense
 
     def condensed(self, gears: Answer) -> None:
-        """A worker has condensed the gears, or was sent them (None)."""
+        """Takes over gears that a worker has condensed; None where it was sent them."""
         if isinstance(gears, bytes):
             self._is_condensing = False
             self._keep = Keep(gears) if gears else None
 
     def again(self, order: Order) -> None:
-        """A worker has died at this order."""
+        """Puts back an order at which a worker process ended unexpectedly."""
         if isinstance(order, Solve):
             self.solving.appendleft(order)
         elif isinstance(order, Condense):
@@ -202,7 +202,7 @@ class _Group:
             self._keep = order
 
     def given_up(self, order: Order, reason: str) -> list[SceneRecord]:
-        """The records of scenes that cannot be computed: those of the order, or all that wait for the gears."""
+        """Records of scenes that cannot be computed: those of the order, or all that wait for the gears."""
         if isinstance(order, Solve):
             return failed(order.line, reason)
         waiting, self._is_condensing = list(self.solving), False

@@ -25,7 +25,8 @@ from evolvent_meshes.errors import EvolventError
 
 
 def line_name(task: SceneTask) -> str:
-    """The same of scenes that differ in misalignment only and are solved together; else that of the scene."""
+    """Name that scenes have in common which differ in misalignment only and are solved together; other scenes have
+    their own."""
     if task.compute != "excitation":
         return task.name
     pair = task.scene.pair.model_copy(update={"misalignment_um": 0.0})
@@ -43,7 +44,7 @@ def solve_line(tasks: Sequence[SceneTask], gears: LoadList) -> list[SceneRecord]
 
 
 def _keep_positions(tasks: Sequence[SceneTask], gears: LoadList) -> None:
-    """Leaves solved positions in the scenes' folders, from where each excitation goes on. tasks: at ascending
+    """Archives solved positions in the scenes' folders, from which each excitation resumes. tasks: at ascending
     misalignments. Raises what `run_excitation` does."""
     first, loads = tasks[0].scene, [own_torque(task.scene) for task in tasks]
     check_positions(first)
@@ -59,7 +60,7 @@ def _keep_positions(tasks: Sequence[SceneTask], gears: LoadList) -> None:
 
 
 def _solve_missing(models: Sequence[GearModel], kept: Sequence[KeptPositions], positions: int) -> None:
-    """Solves the positions that one of the scenes has not. positions: of a pitch."""
+    """Solves the positions that are not archived for all of the scenes. positions: number in a pitch."""
     known = [each.read() for each in kept]
     missing = [number for number in range(positions) if not all(number in found for found in known)]
     angles = np.array(uniform_pitch(models[0].pair.pinion.z, positions).angles)[missing]

@@ -1,4 +1,4 @@
-"""What the process of a study has a worker process do: each order is answered once."""
+"""Orders from the process of a study to its worker processes; each is answered once."""
 
 from __future__ import annotations
 
@@ -16,48 +16,52 @@ Answer = bytes | list[SceneRecord] | None
 
 @dataclass(frozen=True)
 class Condense:
-    """Condense the gears that scenes share, and keep them. Answer: the gears, pickled, where others need them."""
+    """Order to condense the gears that scenes share, and to hold them. Answer: the gears, pickled, where other workers
+    need them."""
 
     tasks: Line
-    """All that share them."""
+    """All scenes that share the gears."""
     are_sent: bool
-    """Whether other workers need them."""
+    """Whether other workers need the gears."""
     deaths: int = 0
-    """Of workers at this order."""
+    """Worker processes that ended unexpectedly at this order."""
 
     def carried_out(self, gears: LoadList | None) -> tuple[LoadList | None, Answer]:
-        """The gears to keep, and the answer. gears: those that were kept."""
+        """Carries out the order. Returns the gears that the worker holds from then on, and the answer. gears: those
+        that it held before."""
         made = condense(self.tasks)
         return made, pickle.dumps(made) if self.are_sent else b""
 
 
 @dataclass(frozen=True)
 class Keep:
-    """Keep gears that another worker has condensed. Answer: None."""
+    """Order to hold gears that another worker has condensed. Answer: None."""
 
     gears: bytes
-    """Pickled."""
+    """Condensed gears, pickled."""
     deaths: int = 0
-    """Of workers at this order."""
+    """Worker processes that ended unexpectedly at this order."""
 
     def carried_out(self, gears: LoadList | None) -> tuple[LoadList | None, Answer]:
-        """See `Condense.carried_out`."""
+        """Carries out the order. Returns the gears that the worker holds from then on, and the answer. gears: those
+        that it held before."""
         return pickle.loads(self.gears), None
 
 
 @dataclass(frozen=True)
 class Solve:
-    """Compute scenes. Answer: their records."""
+    """Order to compute scenes. Answer: their records."""
 
     line: Line
-    """The scenes."""
+    """Scenes that are computed."""
     on_kept_gears: bool
-    """Whether on those that the worker keeps; else it drops these, and a scene condenses its own."""
+    """Whether the scenes use the gears that the worker holds; else it drops these, and a scene condenses its own."""
     deaths: int = 0
-    """Of workers at this order."""
+    """Worker processes that ended unexpectedly at this order."""
 
     def carried_out(self, gears: LoadList | None) -> tuple[LoadList | None, Answer]:
-        """See `Condense.carried_out`."""
+        """Carries out the order. Returns the gears that the worker holds from then on, and the answer. gears: those
+        that it held before."""
         if self.on_kept_gears:
             assert gears is not None
             return gears, solve_line(self.line, gears)
@@ -66,7 +70,7 @@ class Solve:
 
 @dataclass(frozen=True)
 class Failure:
-    """The answer to an order that has ended with an error of the program."""
+    """Answer to an order that ended with an error of the program."""
 
     reason: str
     """The error's type and message."""

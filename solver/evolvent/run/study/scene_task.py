@@ -41,20 +41,20 @@ class SceneTask:
     """A scene to be computed."""
 
     name: str
-    """Of its content."""
+    """Hash of the scene's content."""
     folder: Path
-    """Where its results go."""
+    """Folder for the results of the scene."""
     compute: Computation
-    """What is computed."""
+    """Computation, as the study file names it."""
     scene: Scene
-    """Valid."""
+    """Validated scene."""
     share_of_memory: int = 1
-    """How many scenes are computed at once on a machine; 0: its memory is not checked."""
+    """Number of scenes that are computed at once on a machine; 0: its memory is not checked."""
 
 
 def condense(tasks: Sequence[SceneTask]) -> LoadList:
-    """The gears that some scenes share. Those that cannot be condensed are left out: each scene then fails by itself,
-    with its own reason."""
+    """Gears that some scenes share, condensed. Those that cannot be condensed are left out: each scene then fails by
+    itself, with its own reason."""
     compute, first = tasks[0].compute, tasks[0].scene
     gears = LoadList([condensed_problem(task.scene, compute) for task in tasks])
     for mesh in meshes(first, compute):
@@ -87,7 +87,8 @@ def solve(task: SceneTask, gears: LoadList | None = None) -> SceneRecord:
 
 
 def _wait_until_free(folder: Path) -> None:
-    """A worker of a scheduler may still compute a scene of a study that was killed: its result is waited for."""
+    """Waits until no other process computes in the folder: a worker of a scheduler may still compute a scene of a study
+    that was killed."""
     while True:
         try:
             with locked(folder):
@@ -97,7 +98,7 @@ def _wait_until_free(folder: Path) -> None:
 
 
 def _require_room(task: SceneTask) -> None:
-    """Raises SceneError where as many scenes at once as there are want more memory than the machine has."""
+    """Raises SceneError where all scenes that are computed at once need more memory than the machine has."""
     if task.share_of_memory and task.compute != "check":
         needed = MEMORY_OF.get(task.compute, memory_megabytes)
         require_memory(task.scene, lambda scene, ranks: task.share_of_memory * needed(scene, ranks), MPI.COMM_SELF)
@@ -138,4 +139,4 @@ COMPUTING: Mapping[Computation, Callable[[SceneTask, Preparer], list[str]]] = {
     "check": _check, "run": _run, "excitation": _excitation, "dynamics": _dynamics, "strength": _strength,
     "wear": _wear,
 }
-"""Computation -> what computes a scene in its folder and returns sentences for a reader."""
+"""Computation -> function that computes a scene in its folder and returns warnings, a sentence each."""

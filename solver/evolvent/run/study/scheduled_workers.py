@@ -26,9 +26,9 @@ PATIENCE = 15.0
 MOST_SHOWN = 200
 """Largest number of characters of an address or a reason in a message."""
 MOST_WAITING = 1000
-"""Largest number of tasks that are with the scheduler at once: each carries its scenes."""
+"""Largest number of tasks that are submitted to the scheduler at once: each carries its scenes."""
 TOKEN = ".evolvent-study"
-"""File that workers must see in the study's folder."""
+"""Name of the file by which it is tested that workers see the study's folder."""
 
 
 @contextmanager
@@ -63,7 +63,7 @@ class ScheduledWorkers:
         self._client = client
 
     def finished(self, tasks: Mapping[SceneTask, str]) -> Iterator[SceneRecord]:
-        """See `SceneWorkers`."""
+        """Records of the scenes as they are computed, in any order; see `SceneWorkers`."""
         submitted = self._submitted(sharing(tasks))
         handed: dict[str, Line] = {}
         waiting = as_completed(loop=self._client.loop)
@@ -92,7 +92,8 @@ class ScheduledWorkers:
 
 
 def _records(line: Line, done: Future) -> list[SceneRecord]:
-    """What a worker has returned; failures where it died of the scenes, or ended with an error of the program."""
+    """Records that a worker returned; failures where its process ended unexpectedly, or with an error of the program.
+    """
     error = done.exception()
     if error is None:
         found = done.result()
@@ -109,7 +110,7 @@ async def _reached(address: str) -> None:
 
 
 def _check_workers(client: Client, address: str, out: Path) -> None:
-    """Raises InputError where scenes cannot be computed."""
+    """Raises InputError where the workers cannot compute scenes."""
     with contextlib.suppress(TimeoutError):
         client.wait_for_workers(1, timeout=PATIENCE)
     threads = client.nthreads()

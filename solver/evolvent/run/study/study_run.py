@@ -40,13 +40,13 @@ from evolvent_meshes.text_files import UnreadableText, read_text
 
 SCENES_STAGE = "scenes"
 INTERVAL = 10.0
-"""Time after which the table is written again while scenes are computed [s]."""
+"""Time [s] between two writings of the table while scenes are computed."""
 PICTURES = "pictures/*.png"
 Workers = Callable[[], AbstractContextManager[SceneWorkers]]
 
 
 class NothingComputed(ResultError):
-    """No scene of a study could be computed."""
+    """Error of a study of which no scene could be computed."""
 
 
 @dataclass(frozen=True)
@@ -54,15 +54,16 @@ class Study:
     """A study, ready to be computed."""
 
     file: StudyFile
-    """What it is made from."""
+    """Content of the study file."""
     scenes: Sequence[StudyScene]
-    """In the order of the table."""
+    """Scenes in the order of the table."""
     figures: Sequence[Figure]
-    """That the table gathers."""
+    """Figures that the table gathers."""
 
     @property
     def content(self) -> str:
-        """What its table is of, as JSON: title, computation, and a SHA-256 of its scenes' names in their order."""
+        """Identity of the study's table, as JSON: title, computation, and a SHA-256 of its scenes' names in their
+        order."""
         names = hashlib.sha256(" ".join(each.name for each in self.scenes).encode()).hexdigest()
         values = {"title": self.file.title, "compute": self.file.compute, "scenes": len(self.scenes), "names": names}
         return json.dumps(values, ensure_ascii=False, indent=1) + "\n"
@@ -127,14 +128,14 @@ def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
 
 
 def _names(content: str) -> object:
-    """What a study's content says of its scenes; None where it cannot be read."""
+    """Hash of the scenes' names in a study's content; None where it cannot be read."""
     with contextlib.suppress(ValueError, TypeError, KeyError, RecursionError):
         return json.loads(content)["names"]
     return None
 
 
 def _kept_names(path: Path) -> object:
-    """The same of a file; None where it cannot be read."""
+    """Hash of the scenes' names in a study's file; None where it cannot be read."""
     with contextlib.suppress(UnreadableText):
         return _names(read_text(path, "JSON", 1))
     return None
@@ -146,7 +147,7 @@ def _named(study: Study) -> set[str]:
 
 
 def _values(study: Study, rows: Sequence[TableRow], columns: Sequence[str]) -> StudyValues:
-    """For the pictures: each key of a Latin hypercube is an axis."""
+    """Data for the pictures: each key of a Latin hypercube is an axis."""
     points = axes(study.file)
     keys = [(key,) for axis in points for key in axis.keys] if study.file.latin_hypercube else [a.keys for a in points]
     return StudyValues(study.file.title, keys, rows, columns, study.file.latin_hypercube is not None)
@@ -160,7 +161,7 @@ def _known(scene: StudyScene, out: Path) -> SceneRecord | None:
 
 
 class _Table:
-    """The table of a study as it fills. records: by the name of their scene."""
+    """Table of a study while its scenes are computed. records: by the name of their scene."""
 
     def __init__(self, study: Study, out: Path, records: Mapping[str, SceneRecord]) -> None:
         self.study, self.out, self.records = study, out, dict(records)
@@ -168,10 +169,10 @@ class _Table:
         self.rows: dict[str, TableRow] = {}
         self._counts = Counter(each.name for each in study.scenes)
         self.done = sum(self._counts[name] for name in records)
-        """How many scenes are not waiting."""
+        """Number of scenes that are done, failed or refused."""
 
     def missing(self, at_once: int) -> dict[SceneTask, str]:
-        """Tasks that are to be computed, each once, with the name of the gears that they share."""
+        """Tasks that are still to be computed, each once, with the name of the gears that they share."""
         compute = self.study.file.compute
         return {
             SceneTask(each.name, scene_folder(self.out, each.name), compute, each.scene, at_once): each.gears
@@ -180,12 +181,12 @@ class _Table:
         }
 
     def add(self, record: SceneRecord) -> None:
-        """A scene was computed."""
+        """Adds the record of a computed scene."""
         self.records[record.name] = record
         self.done += self._counts[record.name]
 
     def write_now_and_then(self, folder: RunFolder) -> None:
-        """Writes the table where it was not for a while."""
+        """Writes the table if `INTERVAL` has passed since it was last written."""
         if time.monotonic() - self.written > INTERVAL:
             self.write(folder)
             self.written = time.monotonic()
@@ -199,7 +200,7 @@ class _Table:
         return rows, columns
 
     def all_rows(self) -> list[TableRow]:
-        """In the order of the study; each scene's figures are read once."""
+        """Rows of all scenes in the order of the study. The figures of each scene are read once."""
         return [self._row(each) for each in self.study.scenes]
 
     def _row(self, scene: StudyScene) -> TableRow:
@@ -212,8 +213,8 @@ class _Table:
         return self.rows[scene.name]
 
     def said(self) -> list[str]:
-        """What a reader has to know of failures. Raises NothingComputed where no scene is done, InputError where the
-        values of all of them are refused."""
+        """Sentence on failed and refused scenes; empty list where there are none. Raises NothingComputed where no scene
+        is done, InputError where the values of all of them are refused."""
         rows = self.all_rows()
         failed = [row for row in rows if row.status != DONE]
         if not failed:

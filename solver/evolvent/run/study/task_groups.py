@@ -1,4 +1,4 @@
-"""Which scenes of a study are computed together: on the same condensed gears, or as one task of one worker."""
+"""Groups of scenes of a study that are computed together: on the same condensed gears, or as one task of one worker."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from evolvent.run.study.results.scene_record import SceneRecord, read_record
 from evolvent.run.study.scene_task import FAILED, SceneTask
 
 DEATHS = 3
-"""Largest number of deaths of a worker process at one scene: then the scene is given up."""
+"""Largest number of times that a worker process may end unexpectedly at one order before its scenes are given up."""
 Line = tuple[SceneTask, ...]
 """Scenes that one task computes."""
 
@@ -24,17 +24,17 @@ class SceneWorkers(Protocol):
 
 
 def sharing(tasks: Mapping[SceneTask, str]) -> list[Line]:
-    """The tasks, those that share gears together."""
+    """Groups of tasks that share gears; a task with gears of its own is a group by itself."""
     return _grouped(tasks, lambda task: tasks[task] or task.name)
 
 
 def lines(group: Iterable[SceneTask]) -> list[Line]:
-    """Tasks that share gears, those that are solved together in one line."""
+    """Tasks that share gears, in lines of those that are solved together."""
     return _grouped(group, line_name)
 
 
 def _grouped(tasks: Iterable[SceneTask], name: Callable[[SceneTask], str]) -> list[Line]:
-    """Those of one name together, in their order."""
+    """Groups of tasks with the same name, in their order."""
     groups: dict[str, list[SceneTask]] = {}
     for task in tasks:
         groups.setdefault(name(task), []).append(task)
@@ -42,7 +42,7 @@ def _grouped(tasks: Iterable[SceneTask], name: Callable[[SceneTask], str]) -> li
 
 
 def failed(line: Line, reason: str) -> list[SceneRecord]:
-    """Records of scenes whose computation ended without any; those that were done before keep theirs."""
+    """Records of scenes whose computation ended without any; scenes that were done before keep theirs."""
     return [
         read_record(task.folder) or SceneRecord(task.name, task.compute, FAILED, reason, (), float("nan"))
         for task in line

@@ -13,18 +13,18 @@ import sys
 from multiprocessing.connection import Connection
 
 PARENT_DEATH_SIGNAL = 1
-"""PR_SET_PDEATHSIG of Linux."""
+"""Number of the option PR_SET_PDEATHSIG of Linux' prctl."""
 
 
 def end_with(parent: int) -> None:
-    """Has the system kill this process as soon as its parent has ended, in whatever library it computes then."""
+    """Makes the system kill this process as soon as its parent has ended, even while a library computes."""
     ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL)
     if os.getppid() != parent:  # it has ended before
         os._exit(1)
 
 
 def serve(connection: Connection) -> None:
-    """Says that it is ready, and answers orders until the connection is closed."""
+    """Reports that the worker process is ready, and answers orders until the connection is closed."""
     from evolvent.run.study.orders import Failure
 
     gears = None

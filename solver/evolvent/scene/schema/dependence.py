@@ -24,13 +24,14 @@ class Dependent:
     """A key that needs a main key."""
 
     key: str
-    """Dotted."""
+    """Dotted key that needs a main key."""
     default: Any
-    """With it the key says nothing."""
+    """Value with which the key has no effect of its own."""
     mains: tuple[str, ...]
-    """Dotted; one of them is enough."""
+    """Dotted main keys; one of them is enough."""
     holding: Any
-    """What the list of a main key must hold; None where any value but none, 0, false and the empty list will do."""
+    """Value that the list of a main key must hold; None where any value but none, 0, false and the empty list will do.
+    """
 
     @property
     def wanted(self) -> str:
@@ -85,14 +86,14 @@ def value_at(scene: BaseModel, key: str) -> Any:
 
 
 def is_given(scene: BaseModel, key: str) -> bool:
-    """Whether the scene's author has written a dotted key, with whatever value."""
+    """Whether the input file gives a dotted key, with whatever value."""
     section, _, name = key.rpartition(".")
     holder = value_at(scene, section) if section else scene
     return holder is not None and name in holder.model_fields_set and getattr(holder, name) is not None
 
 
 def _without_effect(scene: BaseModel) -> Iterator[Dependent]:
-    """The keys that say something which no main key uses."""
+    """Dependent keys with a value of their own, none of whose main keys uses it."""
     for each in dependents(type(scene)):
         value = value_at(scene, each.key)
         if value is not None and value != each.default and not each.is_used(scene):
@@ -100,7 +101,7 @@ def _without_effect(scene: BaseModel) -> Iterator[Dependent]:
 
 
 def _problem(dependent: Dependent, scene: BaseModel) -> InputProblem:
-    """Names key, main key and remedy, and the other gear where that has the main key."""
+    """Problem with a dependent key: key, main key and remedy, and the other gear where that has the main key."""
     remedy = f"give {dependent.wanted}, or delete the key"
     section, _, name = dependent.key.rpartition(".")
     if (other := OTHER_GEAR.get(section)) and any(is_given(scene, f"{other}.{main.rpartition('.')[2]}")

@@ -13,26 +13,26 @@ MOST_SPEEDS = 5000
 MOST_TORQUES = 30
 """Largest number of torques of an excitation or a load list; each costs as much as a run of all positions."""
 FASTEST = 1e6
-"""Highest speed [r/min]."""
+"""Highest speed that a scene may have [r/min]."""
 SPEEDS = f"two rising numbers above 0 up to {FASTEST:g}, in r/min"
 HISTORIES = f"a list of up to 6 different speeds above 0 up to {FASTEST:g}, in r/min"
 PERCENTS = "different numbers above 0 up to 1000, 100 among them"
 MAP = 2, 12
-"""Fewest and most torques of a map."""
+"""Smallest and largest number of torques of a map."""
 MAP_RANGE = 1.0, 400.0
-"""[%]."""
+"""Smallest and largest torque of a map [%]."""
 MAP_PERCENTS = f"{MAP[0]} to {MAP[1]} different numbers from {MAP_RANGE[0]:g} to {MAP_RANGE[1]:g}"
 
 TRANSIENT_SPEEDS = f"a list of 1 to 12 different speeds above 0 up to {FASTEST:g}, in r/min"
 MANY_PARTS, MOST_PARTS = 64, 1024
-"""Of the way from one position to the next: by default at most, and the most that may be asked for."""
+"""Largest number of time steps from one position to the next: default, and upper limit that a scene may set."""
 DEVIATION = "a number above 0 up to 1000, in µm: no gear is perfect"
 PARTS = f"a power of two from 2 to {MOST_PARTS}"
 Speed = Annotated[float, Field(gt=0, le=FASTEST)]
 
 
 def _inertia(gear: str) -> Any:
-    """The key of a moment of inertia."""
+    """Declares the key of a moment of inertia."""
     return key(
         f"moment of inertia of the {gear} with all that turns rigidly with it; by default that of its body, from "
         "geometry and density",
@@ -43,7 +43,7 @@ def _inertia(gear: str) -> Any:
 
 
 def _percents_remedy(given: tuple[float, ...]) -> str:
-    """What is wrong with torque_percents."""
+    """Remedy for invalid torque_percents."""
     if wrong := [each for each in given if not 0.0 < each <= 1000.0]:
         return f"leave out {shown(wrong[0])}, which is not above 0 up to 1000"
     if twice := [each for each in given if given.count(each) > 1]:
@@ -52,7 +52,7 @@ def _percents_remedy(given: tuple[float, ...]) -> str:
 
 
 def _map_remedy(given: tuple[float, ...]) -> str:
-    """What is wrong with map_percents."""
+    """Remedy for invalid map_percents."""
     if wrong := [each for each in given if not MAP_RANGE[0] <= each <= MAP_RANGE[1]]:
         return f"leave out {shown(wrong[0])}"
     if twice := [each for each in given if given.count(each) > 1]:

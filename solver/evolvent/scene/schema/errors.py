@@ -1,4 +1,4 @@
-"""Errors of a scene, one line each: the key, what was found, what is allowed, and a remedy."""
+"""Errors of a scene, one line each: the key, the given value, the allowed ones, and a remedy."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from evolvent.scene.schema.section import SceneSection
 from evolvent_meshes.errors import InputError
 
 NOTHING = "nothing"
-"""What was found where something is missing."""
+"""Word for a missing value in a message."""
 MOST = 20
 """Largest number of problems in one message."""
 LONGEST_NUMBER = 40
 """Largest number of digits of a whole number that are shown."""
 BEYOND = {"greater_than": "too_small", "greater_than_equal": "too_small", "less_than_equal": "too_large"}
-"""Type of pydantic's error on a number beyond a limit -> the word of the declaration that has its remedy."""
+"""Type of pydantic's error on a number beyond a limit -> the entry of the declaration that has its remedy."""
 ASKED = re.compile(r"did you mean (\S+?)(?: or \S+)*(?: \(.*\))?\?")
-"""The remedy of an unknown key or section that names what was meant."""
+"""Regular expression for the remedy of an unknown key or section that suggests a known one."""
 LONGEST_TEXT = 60
 """Largest number of characters of a value or a key that are shown."""
 
@@ -42,11 +42,11 @@ class InputProblem:
     key: str
     """Dotted key of the scene, as `--set` takes it, or name of an option."""
     found: str
-    """What was found."""
+    """Given value, or a phrase on its error."""
     allowed: str
-    """What is allowed."""
+    """Allowed values."""
     remedy: str
-    """What to do."""
+    """Remedy: how to correct the input."""
 
     def __str__(self) -> str:
         return f"{self.key}: found {self.found}; allowed: {self.allowed}; remedy: {self.remedy}"
@@ -91,7 +91,7 @@ def _without_emptied_lists(details: list[ErrorDetails]) -> list[ErrorDetails]:
 
 
 def _without_consequences(problems: list[InputProblem]) -> list[InputProblem]:
-    """The problems without those on what is missing only because its name is misspelled: the spelling is the remedy."""
+    """The problems without those on missing keys whose names are misspelled: the spelling is the remedy."""
     asked = [(problem.key, ASKED.match(problem.remedy)) for problem in problems]
     meant = {match[1] for key, match in asked if match and key.rpartition(".")[0] == match[1].rpartition(".")[0]}
     return [problem for problem in problems if problem.found != NOTHING or problem.key not in meant]
@@ -189,7 +189,7 @@ def key_problem(name: str, value: Any, model: type[SceneSection]) -> InputProble
 
 
 def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -> InputProblem:
-    """The problem with an unknown key or section: it names what was meant, or says what is not supported."""
+    """Problem with an unknown key or section, with a suggestion, or the note that it is not supported."""
     name, parents = str(path[-1]), [part for part in path[:-1] if isinstance(part, str)]
     found = f"an unknown {'section' if isinstance(value, dict) else 'key'}, {shown(value)}"
     place = f"a key of [{dotted(parents)}]" if parents else "a section or key"
@@ -205,7 +205,7 @@ def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -
 
 
 def _meant(name: str, parents: list[str], model: type[SceneSection], is_section: bool) -> Meant | None:
-    """What was meant by an unknown key or section."""
+    """Probable meaning of an unknown key or section; None where there is none."""
     parent = dotted(parents)
     inside = section_of(_declaration(parents, model)) if parents else model
     assert inside is not None

@@ -14,9 +14,9 @@ DEPTHS = (
     "half-widths of the contact"
 )
 NEEDED = 0.0, 0.02, 0.05, 0.1
-"""Half-widths at which tables have each criterion."""
+"""Depths [half-widths] that every list holds: the tables have each criterion there."""
 DEEPEST = 1.0
-"""The last depth is at least this: the largest shear stress below a line contact lies above it."""
+"""Smallest value of the last depth [half-widths]: the largest shear stress below a line contact lies above it."""
 EXPONENTS = "a list of up to 12 different numbers from 1 to 100"
 Depth = Annotated[float, Field(ge=0, le=10)]
 Exponent = Annotated[float, Field(ge=1, le=100)]

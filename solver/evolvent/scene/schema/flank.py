@@ -1,4 +1,5 @@
-"""The keys of [pinion] and [wheel] for the loaded flank: modifications and a chart.
+"""Keys of [pinion] and [wheel] for the loaded flank: modifications and a chart. Amounts are removed material; where one
+may be negative, its sign tells the end.
 
 Amounts are material that is taken off; where one may be negative, its sign says at which end.
 """

@@ -13,7 +13,7 @@ from evolvent.scene.schema.section import SceneSection, key
 LEAST_HELIX = 1e-3
 """Smallest helix angle [°]: 0.3 µm over a face of 20 mm. A gear with less is a spur gear."""
 LEAST_ALLOWANCE = 1.0
-"""Smallest amount of a tooth thickness allowance [µm]: less is one in mm."""
+"""Smallest amount of a tooth thickness allowance [µm]; a smaller number is likely to be in mm."""
 ALLOWANCE = f"0, or a number from -15000 to -{LEAST_ALLOWANCE:g}, at most 0.3 m_n, in µm"
 EDGE = "0, or a number from 0.03 to 0.3 m_n, in µm"
 

@@ -1,4 +1,4 @@
-"""The sections [output] and [skip]: what a run writes, and which shortcuts it must not take."""
+"""Sections [output] and [skip]: the files that a run writes, and shortcuts that it must not take."""
 
 from __future__ import annotations
 

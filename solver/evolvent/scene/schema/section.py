@@ -40,7 +40,7 @@ class SceneSection(BaseModel):
     infinity."""
 
     kind: ClassVar[str] = "scene"
-    """What the file describes."""
+    """Kind of the input file."""
     page: ClassVar[str] = "docs/scene.md"
     """The page that lists its keys."""
 

@@ -16,7 +16,7 @@ SMALLEST, LARGEST = 1e-16, 1e-5
 
 
 def _coefficient(gear: str) -> Any:
-    """The key of a wear coefficient."""
+    """Declares the key of a wear coefficient."""
     return key(
         f"Archard's K/H of the {gear}, wear coefficient over hardness; 0: it does not wear",
         f"0, or a number from {SMALLEST:g} to {LARGEST:g}, in mm²/N",

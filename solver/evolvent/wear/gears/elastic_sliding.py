@@ -38,7 +38,7 @@ from evolvent_meshes.gears.pair import GearPair
 
 Grids = tuple[FlankGrid, FlankGrid]
 Both = tuple[Floats, Floats]
-"""One array per gear."""
+"""Arrays of pinion and wheel."""
 DISPLACEMENT_ZONE = 3
 """Spacings of arc about loaded nodes where displacements are computed; a slope needs one beyond either neighbour."""
 
@@ -121,7 +121,7 @@ class PitchDeflection:
 
     @cached_property
     def _rotation_rates(self) -> Floats:
-        """ε' (2, positions) [rad/rad]."""
+        """Rates ε' (2, positions) of the gears' rotations by deflection [rad/rad]."""
         ε = np.array([stand.extra for stand in self.stands]).T
         return np.asarray((np.roll(ε, -1, axis=1) - np.roll(ε, 1, axis=1)) / (2.0 * self.step))
 

@@ -34,30 +34,30 @@ class BlockRow:
     """An accepted block of cycles, a line of wear.csv."""
 
     cycles: float
-    """Revolutions of the pinion at its end."""
+    """Revolutions of the pinion at the end of the block."""
     block_cycles: float
-    """Revolutions in it."""
+    """Revolutions of the pinion in the block."""
     error: float
-    """Estimated volume that it wears off in the wrong place, over its whole worn volume."""
+    """Estimated volume that the block wears off in the wrong place, over its whole worn volume."""
     refused: int
     """Longer blocks that were tried before and rejected."""
     searched: int
     """Positions whose contact was searched anew."""
     refreshed: int
-    """How often the meshes have followed the wear so far."""
+    """Number of mesh updates so far."""
     deepest_pinion_um: float
-    """Largest worn depth so far between the edge margins (0.1 m_n), pinion."""
+    """Largest worn depth of the pinion so far, between the edge margins (0.1 m_n)."""
     deepest_wheel_um: float
-    """The same of the wheel."""
+    """Largest worn depth of the wheel so far, between the edge margins (0.1 m_n)."""
     volume_pinion_mm3: float
-    """Volume worn off a tooth so far, pinion."""
+    """Volume worn off a tooth of the pinion so far."""
     volume_wheel_mm3: float
-    """The same of the wheel."""
+    """Volume worn off a tooth of the wheel so far."""
 
 
 @dataclass(frozen=True)
 class StudyCheckpoint:
-    """What a study resumes from.
+    """State from which a wear study is resumed.
 
     cycles: revolutions of the pinion done.
     depth: (n,) worn depths [mm].

@@ -39,7 +39,8 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
 
 NEGATIVE_VOLUME = 1e-7
-"""Of a block's volume: negative depths up to this are cut off; a tenth of the tolerance of the volume's certificate."""
+"""Negative volume over the positive one of a block up to which negative depths are cut off; a tenth of the tolerance of
+the volume's certificate."""
 
 
 class GearWear:
@@ -89,7 +90,7 @@ class GearWear:
 
     @property
     def areas(self) -> Floats:
-        """(n,) of all flank nodes [mm²; mm in 2D]."""
+        """(n,) areas of all flank nodes [mm²; mm in 2D]."""
         return self.geometry.areas
 
     @property
@@ -122,8 +123,8 @@ class GearWear:
     def resumed(
         self, depth: Floats, searches: Sequence[SearchedAt], vibration: Vibration | None = None
     ) -> PitchState:
-        """The pitch at depths (n,) with the contact searched where `searches`, one a position, say. vibration: the
-        operation there."""
+        """The pitch at depths (n,) with the contact searched at the places `searches`, one for each position.
+        vibration: its state there."""
         start = None
         if vibration is not None and self.operating is not None:
             model, places, positions = self.geometry.with_gap(depth), vibration.searches, None
@@ -140,7 +141,7 @@ class GearWear:
         return self.grids[gear].chart(self.model.pair.gears[gear], depth)
 
     def vibration(self, state: PitchState) -> Vibration | None:
-        """Of the pitch, all ranks together; None under a constant torque."""
+        """Vibration of the pitch with the searches of all ranks; None under a constant torque. Collective."""
         operation = state.operation
         if operation is None:
             return None
@@ -151,8 +152,8 @@ class GearWear:
         return Vibration(operation.state, operation.forces, torques, searches)
 
     def _loaded(self, depth: Floats, before: Start | None) -> tuple[Operation | None, GearModel]:
-        """The gears at depths (n,) under their load, and the operation that it comes from, if it varies. before: on
-        nearly the same flanks."""
+        """The gears at depths (n,) under their load, and the operation that a varying load comes from. before: start of
+        the operation on nearly the same flanks."""
         model = self.geometry.with_gap(depth)
         if self.operating is None:
             return None, model
@@ -161,7 +162,7 @@ class GearWear:
         return operation, replace(model, load=operation.load)
 
     def searches(self, state: PitchState) -> list[SearchedAt]:
-        """Where the contact of each position was searched, of all ranks."""
+        """Places where the contact of each position was searched, of all ranks."""
         mine = [shared.searched for shared in state.shared]
         return [search for part in self._comm.allgather(mine) for search in part]
 
@@ -204,7 +205,8 @@ class GearWear:
             raise
 
     def _evaluate(self, depth: Floats, previous: PitchState | None, pressed: Mapping[int, Bools]) -> PitchState:
-        """pressed: by number of this rank's positions, (q,) which points are likely to be pressed."""
+        """One pitch at depths (n,). pressed: by number of this rank's positions, (q,) which points are likely to be
+        pressed."""
         reusable = previous is not None and previous.mesh_updates == self.mesh_updates
         start = None if previous is None or previous.operation is None else previous.operation.start
         if start is not None and not reusable:

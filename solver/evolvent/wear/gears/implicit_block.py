@@ -46,8 +46,8 @@ class PositionResponse:
         self, normal: CondensedSystem, state: Equilibrium, points: ContactPoints, separating: Bools,
         full: PositionResponse | None = None,
     ) -> None:
-        """About a state of a frictionless system. full: the response in which no point separates, from whose matrix
-        this one's is computed; None: from the system."""
+        """Response about a state of a frictionless system. full: the response in which no point separates, from whose
+        matrix this one's is computed; None: from the system."""
         self._normal, self._state, self.points, self.separating = normal, state, points, separating
         self._pressed, self._full = np.flatnonzero(state.traction[:, 0] > 0.0), full
 
@@ -62,7 +62,7 @@ class PositionResponse:
         return self._at_all_points(self.at_all_points(opening))[self._pressed]
 
     def _factored(self) -> PositionResponse:
-        """The same with everything computed that may fail, so that all ranks fail together."""
+        """The response, with all its parts computed that may fail, so that all ranks fail together."""
         _ = self.separation, self.matrix if self.is_small else None
         return self
 
@@ -72,7 +72,7 @@ class PositionResponse:
 
     @cached_property
     def matrix(self) -> Floats:
-        """R (p, p) [MPa/mm]."""
+        """Matrix R (p, p) of the pressure response [MPa/mm]."""
         if self._full is None:
             return self(np.eye(len(self.separating)))
         R = self._full.matrix
@@ -192,7 +192,7 @@ def _joined(responses: Sequence[PositionResponse]) -> Callable[[Floats], Floats]
 
 
 def _ends(responses: Sequence[PositionResponse]) -> Ints:
-    """Where the points of each position but the last end in the list of all."""
+    """Indices in the list of all points at which the points of each position but the last end."""
     return np.cumsum([len(r.separating) for r in responses])[:-1]
 
 

@@ -58,8 +58,8 @@ class MeshedPair:
 
     @staticmethod
     def of(model: GearModel) -> MeshedPair:
-        """Of gears without wear in their meshes. Raises InputError where the nodes of a flank are no grid, and where
-        flanks have levels of their own."""
+        """The meshed pair of gears without wear in their meshes. Raises InputError where the nodes of a flank are no
+        grid, and where flanks have levels of their own."""
         if any(body.levels for body in model.bodies):
             remedy = "write MeshSettings(two_level=False)"
             refuse("wear", "gears whose flanks are those of their meshes", Words("flanks with levels"), remedy)
@@ -69,7 +69,7 @@ class MeshedPair:
 
     @cached_property
     def areas(self) -> Floats:
-        """(n,) of all flank nodes [mm²; mm in 2D]."""
+        """(n,) areas of all flank nodes [mm²; mm in 2D]."""
         return np.concatenate([grid.areas for grid in self.grids])
 
     def by_gear(self, depth: Floats) -> tuple[Floats, Floats]:

@@ -1,4 +1,4 @@
-"""A pitch solved on worn flanks, and what its vibration resumes from."""
+"""A pitch solved on worn flanks, and the state from which its vibration is resumed."""
 
 from __future__ import annotations
 
@@ -39,13 +39,14 @@ class PitchState(CycleEvaluation):
 
 @dataclass(frozen=True, eq=False)
 class Vibration:
-    """What the operation of a pair resumes from."""
+    """State from which the vibration of a wearing pair is resumed."""
 
     state: Floats
-    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    """Coordinate s [mm] and velocity ṡ [mm/s] (2,) at phase 0."""
     forces: tuple[float, float]
     """Smallest and largest mesh force over the static one."""
     torques: tuple[float, ...]
-    """Under which the excitation was solved [N·mm]; empty where its searches are not kept."""
+    """Torques under which the excitation was solved [N·mm]; empty where its searches are not kept."""
     searches: tuple[SearchedAt, ...]
-    """Where the contact of its excitation was searched, of all positions and torques; empty where that is not kept."""
+    """Places where the contact of the excitation was searched, of all positions and torques; empty where they are not
+    kept."""

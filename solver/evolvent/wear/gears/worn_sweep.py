@@ -77,8 +77,8 @@ class WornSweep:
         return together(self.comm, partial(self._completed, model, swept, shared, deflected))
 
     def _swept(self, model: GearModel, shared: Sequence[SharedPosition]) -> list[SweptPosition]:
-        """With friction the ranks solve one after the other, each from the friction history of the one before, and
-        repeat the pitch until the friction state is periodic (periodic_pitch.py)."""
+        """Positions of this rank, solved with friction. The ranks solve one after the other, each from the friction
+        history of the one before, and repeat the pitch until the friction state is periodic (periodic_pitch.py)."""
         progress = SweepProgress(initial_state([self.friction]))
         by_number = dict(zip(self.numbers, shared))
         if not model.has_friction_terms(self.friction):

@@ -74,7 +74,7 @@ def _checkpoint(arrays: Arrays) -> StudyCheckpoint:
 
 
 def _vibration(arrays: Mapping[str, Any]) -> Vibration | None:
-    """What was written of it."""
+    """Vibration of an archived checkpoint; None where it has none."""
     if not len(arrays["vibration"]):
         return None
     s, velocity, low, high = arrays["vibration"].tolist()
@@ -83,7 +83,7 @@ def _vibration(arrays: Mapping[str, Any]) -> Vibration | None:
 
 
 def _places(searches: Sequence[SearchedAt]) -> Floats:
-    """(n, 4): angle, rotations beyond the nominal ones and half-width."""
+    """Places (n, 4) of the searches: angle, rotations beyond the nominal ones and half-width."""
     return np.array([(s.angle, *s.extra, s.half_width) for s in searches]).reshape(-1, 4)
 
 

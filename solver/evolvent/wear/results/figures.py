@@ -149,7 +149,7 @@ def _depth_bar(figure: Figure, ax: Axes, shown: ScalarMappable) -> None:
 
 
 def _most(study: WornRun) -> str:
-    """The caption with the depths at the upper end of the colours."""
+    """Caption with the depths at the upper end of the colours."""
     depths = [f"{GEARS[gear]} {_three(_deepest(study.pairs[-1], gear))} µm" for gear in wearing(study)]
     return f"Largest depth between the edge margins, 0.1 mₙ: {', '.join(depths)}."
 

@@ -62,7 +62,7 @@ class ContactProfile:
 
     @staticmethod
     def of(run: RunData, gear: Member) -> ContactProfile:
-        """Of a plane pair's pitch at its first friction coefficient."""
+        """Contact profile of a plane pair's pitch at its first friction coefficient."""
         cut = Slices.joined([each[0].cut for each in run.positions])
         ξ, load, peak, hertz, b = cut.roll_distance, cut.line_load, cut.peak, cut.hertz, cut.half_width
         fitted = np.flatnonzero(np.isfinite(peak) & np.isfinite(b) & (hertz > 0.0))
@@ -120,7 +120,7 @@ class DepthProfile:
 
     @staticmethod
     def of(pair: WornPair, gear: Member, coefficient: float) -> DepthProfile:
-        """Of a plane pair, between the edge margins. coefficient: K/H [mm²/N]."""
+        """Depth profiles of a plane pair, between the edge margins. coefficient: K/H [mm²/N]."""
         run, inner = pair.run, pair.inner(gear)
         radius = pair.worn[gear].diameters[inner] / 2.0
         ξ = roll_distance_at(run.pair, gear, radius)
@@ -184,8 +184,9 @@ class PointPassage:
 
     @staticmethod
     def of(run: RunData, radius: float, count: int = 1201) -> PointPassage:
-        """At a radius [mm] of a plane pair's pinion, at `count` rotations. The pressures of neighbouring positions are
-        interpolated linearly in the rotation at the same distance from the contact line, as for wear."""
+        """Passage of the contact over a point at a radius [mm] of a plane pair's pinion, at `count` rotations. The
+        pressures of neighbouring positions are interpolated linearly in the rotation at the same distance from the
+        contact line, as for wear."""
         pair, base = run.pair, run.pair.pinion.base_radius
         ξ = roll_distance_at(pair, Member.PINION, radius)
         load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), contact_modulus(*run.scene.materials())
@@ -227,8 +228,8 @@ def _nodal_average(run: RunData, result: PositionResult, tooth: int, s: Floats) 
 
 
 def _quadrature_pressure(_: RunData, result: PositionResult, tooth: int, s: Floats) -> Floats:
-    """The same from the quadrature points, each on a strip as wide as its weight: the pressure ends half a weight
-    beyond the outermost points."""
+    """Pressures (n,) [MPa] of a tooth at distances s (n,) from the contact line, from the quadrature points, each on a
+    strip as wide as its weight: the pressure ends half a weight beyond the outermost points."""
     contact = result.contact
     points = np.flatnonzero(contact.tooth == tooth)
     points = points[np.argsort(contact.across[points])]

@@ -32,9 +32,9 @@ class GearReport:
     deepest_um: float
     """Largest worn depth between the edge margins (0.1 m_n)."""
     at_diameter_mm: float
-    """Diameter at which it is."""
+    """Diameter at which the worn depth is largest."""
     at_z_mm: float
-    """Height above mid-face at which it is."""
+    """Height above mid-face at which the worn depth is largest."""
     at_pitch_point_um: float
     """Worn depth at the pitch point, mean over the face."""
     volume_mm3: float
@@ -48,9 +48,9 @@ class PairReport:
     cycles: float
     """Revolutions of the pinion."""
     pinion: GearReport
-    """Its wear."""
+    """Wear of the pinion."""
     wheel: GearReport
-    """Its wear."""
+    """Wear of the wheel."""
     max_pressure_MPa: float
     """Largest contact pressure of a tooth's engagement, away from the starts of linear reliefs."""
     kink_pressure_MPa: float
@@ -68,12 +68,12 @@ class PairReport:
 
 @dataclass(frozen=True)
 class WearReport:
-    """wear.json."""
+    """Content of wear.json."""
 
     K_over_H_mm2_per_N: Mapping[str, float]
     """Archard's coefficient over the hardness, of pinion and wheel."""
     blocks: int
-    """Blocks of cycles."""
+    """Number of blocks of cycles."""
     refused_blocks: int
     """Longer blocks that were tried and rejected."""
     largest_block_error: float

@@ -1,4 +1,4 @@
-"""Picture of what wear does to the vibration of a pair, over its cycles."""
+"""Picture of the effect of wear on the vibration of a pair, over its cycles."""
 
 from __future__ import annotations
 

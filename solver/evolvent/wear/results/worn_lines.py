@@ -1,4 +1,4 @@
-"""The figures of a worn pair, as the last words of its study on the terminal."""
+"""Key figures of a worn pair in words, printed at the end of its study."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ def load_words(scene: Scene) -> str:
 
 
 def worn_lines(report: Path, unworn: list[str], scene: Scene) -> list[str]:
-    """The pair as it was and as it is after its last block. report: wear.json; unworn: lines of the pair before."""
+    """Lines on the pair before the study and after its last block. report: wear.json; unworn: lines of the pair before.
+    """
     worn = json.loads(report.read_text(encoding="utf-8"))["reports"][-1]
     depths = ", ".join(_depth(worn[gear], gear) for gear in GEARS if worn[gear]["deepest_um"] > 0.0)
     figures = ", ".join([f"worn off at most {depths}" if depths else "nothing worn off", *figure_texts(worn, {})])

@@ -1,4 +1,4 @@
-"""The cases of a scene, every speed at every friction coefficient, on one kind of meshes."""
+"""Transient cases of a scene, every speed at every friction coefficient, on one kind of meshes."""
 
 from __future__ import annotations
 
@@ -38,51 +38,53 @@ from evolvent_meshes.errors import EvolventError
 
 MODES, STEPS = "natural modes", "mesh periods"
 KEPT = 0.4
-"""Of the machine's memory: what the contacts of positions may take, beside the gears."""
+"""Share of the machine's memory for the kept contacts of positions, beside the gears."""
 FIRST = 2
-"""Mesh periods from rest that are reported."""
+"""Number of mesh periods from rest that are reported."""
 Motion = MeshPeriods | None
-"""None where it failed."""
+"""Computed mesh periods of a case; None where it failed."""
 Found = Mapping[int, MeshPeriods | str]
-"""Number of a case -> its motion, or why there is none."""
+"""Number of a case -> its computed mesh periods, or the reason why it failed."""
 
 
 @dataclass(frozen=True)
 class PairMeshes:
-    """On which meshes a pair moves, and with which modes."""
+    """Meshes and natural modes of a vibrating gear pair."""
 
     mesh: Mesher = run_mesh
-    """Of a gear's sector."""
+    """Makes the mesh of a gear's sector."""
     least: int = LEAST
-    """Modes of each harmonic, at least, where the scene does not say how many."""
+    """Natural modes of each harmonic, at least, where the scene does not say how many."""
 
 
 @dataclass(frozen=True)
 class PairCases:
-    """A pair that moves, beside its statics. Its methods are collective."""
+    """Transient cases of a gear pair, one for each speed and friction coefficient, and its static positions. All
+    methods are collective."""
 
     scene: Scene
-    """With a section [transient]."""
+    """Scene with a section [transient]."""
     problem: GearProblem
-    """Of the scene."""
+    """Gear problem of the scene."""
     pair: MovingPair
-    """On one kind of meshes."""
+    """Gear pair with mass, damping and stiffness on one kind of meshes."""
     static: Statics
-    """Its positions without inertia."""
+    """Positions of the pitch without inertia."""
     settings: DriveSettings
-    """How it vibrates."""
+    """Inertias, damping and backlash."""
     comm: MPI.Comm
     """Ranks that share the cases."""
     progress: Progress
-    """Shows the cases of this rank."""
+    """Progress display of this rank's cases."""
 
     @staticmethod
     def of(
         scene: Scene, problem: GearProblem, settings: DriveSettings, on: PairMeshes, kept: KeptCases, comm: MPI.Comm,
         progress: Progress, prepare: Preparer,
     ) -> PairCases:
-        """Meshes, condenses, solves the statics that are not kept, and finds the modes. Collective. Raises MeshError,
-        TooMuchRelief, NotConverged, SearchError, BalanceError, ArchiveError, WriteError."""
+        """Meshes and condenses the gears, solves the missing static positions and computes the natural modes.
+        Collective. Raises MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, ArchiveError, WriteError.
+        """
         section, dynamics = transient_section(scene), scene.dynamics or DynamicsSection()
         known = on_first(comm, kept.read_static)
         progress.stage(MESHING)
@@ -109,7 +111,7 @@ class PairCases:
         return [loaded_as_static(self.pair, results) for results in self.static.positions]
 
     def found(self, kept: KeptCases) -> dict[int, MeshPeriods]:
-        """All cases, those that are not kept divided among the ranks; on rank 0 all of them, none elsewhere. Raises
+        """Computes all cases. Missing ones are divided among the ranks; rank 0 returns all, other ranks none. Raises
         NotConverged, SearchError, BackFlanks, Unbalanced, ArchiveError, WriteError, on all ranks."""
 
         def solved(number: int, transient: PairTransient, start: PairState) -> MeshPeriods:
@@ -120,9 +122,9 @@ class PairCases:
         return self._shared(kept, self.contacts(), solved, STEPS)
 
     def tried(self, kept: KeptCases, contacts: KeptContacts) -> Found:
-        """The same, where a case that fails has its reason instead of a motion, and a motion is not checked: it need
-        not be one that could be reported. contacts: the positions of its time steps. Raises ArchiveError, WriteError.
-        """
+        """Computes all cases of a companion. A case that fails has its reason instead of a motion. A motion is not
+        checked: it need not be one that could be reported. contacts: the positions of its time steps. Raises
+        ArchiveError, WriteError."""
         failures: dict[int, str] = {}
 
         def solved(number: int, transient: PairTransient, start: PairState) -> MeshPeriods | None:
@@ -137,7 +139,8 @@ class PairCases:
         return {**found, **{number: reason for each in every for number, reason in each.items()}}
 
     def contacts(self, steps: int = 1) -> KeptContacts:
-        """The positions of a mesh period, for all cases of a rank. steps: between two positions of the scene."""
+        """Store of the contacts at the positions of a mesh period, for all cases of a rank. steps: time steps between
+        two positions of the scene."""
         components = self.pair.model.bodies[0].d if any(self.scene.contact.friction) else 1
         most = KEPT * 1e6 * machine_megabytes() / self.comm.size
         return KeptContacts(self.pair, steps * self.scene.sweep.positions, components, ContactStore(most))
@@ -146,8 +149,8 @@ class PairCases:
         self, kept: KeptCases, contacts: KeptContacts, solved: Callable[[int, PairTransient, PairState], Motion],
         stage: str,
     ) -> dict[int, MeshPeriods]:
-        """Cases that are kept and those that are solved, on rank 0. solved: by number, transient and its start. stage:
-        to be shown."""
+        """Archived and newly solved cases, on rank 0. solved: solves a case by number, transient and initial state.
+        stage: name of the stage in the progress display."""
         known = together(self.comm, lambda: kept.read() if self.comm.rank == 0 else {})
         ended = self.comm.bcast(set(known))
         missing = [number for number in range(len(self.tasks)) if number not in ended]
@@ -173,7 +176,7 @@ class PairCases:
         return {number: found for part in (known, *gathered) for number, found in part.items()}
 
     def _starts(self, contacts: KeptContacts) -> Callable[[int, PairTransient], PairState]:
-        """Makes the state in which a case begins. Raises NotConverged, SearchError."""
+        """Function that makes the initial state of a case. Raises NotConverged, SearchError."""
         if self._from_rest:
             return lambda _, case: start_from_rest(case.pair, self.problem, case.speed, case.friction)
         statics = quasi_static_starts(self.pair, contacts.step_angle, list(self.scene.contact.friction))
@@ -191,22 +194,23 @@ class PairCases:
         return PairTransient(pair, friction, 2.0 * np.pi * speed / 60.0, scheme, contacts, self._division(contacts))
 
     def _division(self, contacts: KeptContacts) -> DividedSteps:
-        """How steps between two positions are divided. Between positions that are closer than the scene's, steps are to
-        be shorter by as much: their error goes with the square of their length."""
+        """Rule by which steps between two positions are divided. Between positions that are closer than the scene's,
+        steps are to be shorter by as much: their error goes with the square of their length."""
         section, closer = transient_section(self.scene), contacts.positions / self.scene.sweep.positions
         if section.tolerance is None:
             return UNDIVIDED
         return DividedSteps(section.tolerance / closer**2, section.most_parts.bit_length() - 1)
 
     def _until_steady(self, transient: PairTransient, start: PairState) -> MeshPeriods:
-        """Raises NotConverged, SearchError, Unbalanced."""
+        """Mesh periods of a transient until it is steady. Raises NotConverged, SearchError, Unbalanced."""
         section = transient_section(self.scene)
         first = FIRST if self._from_rest else 0
         shown = self.progress.advance
         return until_steady(transient, start, section.mesh_periods, section.steady_change, first, shown)
 
     def _check(self, found: MeshPeriods, transient: PairTransient) -> None:
-        """Raises BackFlanks, Unbalanced."""
+        """Certifies a motion. Raises BackFlanks where back flanks touch, Unbalanced where force or energy are out of
+        balance."""
         require_backlash(found.lowest_error, self.settings.backlash, transient.name)
         if found.is_steady:
             load, energies = transient.pair.drive.torque / transient.pair.lever, found.energies
@@ -214,7 +218,8 @@ class PairCases:
 
 
 def _statics(scene: Scene, model: GearModel, kept: KeptCases, comm: MPI.Comm, progress: Progress) -> Statics:
-    """The positions without inertia, at each friction coefficient. Collective. Raises BalanceError."""
+    """Solves and archives the positions without inertia, at each friction coefficient. Collective. Raises BalanceError.
+    """
     pitch, frictions = uniform_pitch(model.pair.pinion.z, scene.sweep.positions), list(scene.contact.friction)
     progress.stage(POSITIONS, len(pitch.angles))
     solved = certified_pitch(model, pitch, frictions, comm, progress.position)

@@ -1,5 +1,5 @@
-"""What `evolvent transient` refuses before it computes: scenes without its section, folders with results of an earlier
-call."""
+"""Scenes and folders that `evolvent transient` refuses before it computes: scenes without its section, folders with
+results of an earlier call."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from evolvent_meshes.errors import InputError
 KEPT_STATIC, KEPT_CASES = "results/transient_static.npz", "results/transient_*.npz"
 ANIMATION = "field_of_action.gif"
 UNUSED = "series_stiffness_N_per_um", "ground_damping_ratio", "mesh"
-"""Keys of [dynamics]."""
+"""Keys of [dynamics] that `evolvent transient` does not use."""
 WRITTEN = (
     TRANSIENT_SCENE.name, TRANSIENT.name, TRANSIENT_TEETH.name, TRANSIENT_START.name, TRANSIENT_FACTS.name,
     *(f"pictures/{picture.name}" for picture in TRANSIENT_PICTURES), f"pictures/{ANIMATION}",
@@ -29,7 +29,7 @@ WRITTEN = (
 
 
 def transient_section(scene: Scene) -> TransientSection:
-    """Of the scene. Raises InputError where it has none."""
+    """Section [transient] of the scene. Raises InputError where it has none."""
     if scene.transient is None:
         raise InputError(
             "transient: found no section [transient]; wanted one with speeds; remedy: --set "
@@ -39,8 +39,8 @@ def transient_section(scene: Scene) -> TransientSection:
 
 
 def require_possible(scene: Scene) -> None:
-    """Raises SceneError where a start from rest, whose blow throws the flanks apart, has a backlash that nobody has
-    named, or natural modes are too many. From statics no backlash is needed as long as the flanks do not part."""
+    """Raises SceneError where a transient from rest has no known backlash, as its impact separates the flanks, or where
+    there are too many natural modes. From statics no backlash is needed as long as the flanks do not separate."""
     given, section = None if scene.dynamics is None else scene.dynamics.backlash_um, transient_section(scene)
     if section.start == "rest" and (problem := unnamed_backlash(scene.gear_pair(), given)):
         raise SceneError([problem])
@@ -49,7 +49,7 @@ def require_possible(scene: Scene) -> None:
 
 
 def unused_keys(section: DynamicsSection) -> list[str]:
-    """A sentence where keys of [dynamics] say what a transient does not have."""
+    """A sentence on the keys of [dynamics] that the scene gives and `evolvent transient` does not use."""
     standard = DynamicsSection()
     names = [name for name in UNUSED if getattr(section, name) != getattr(standard, name)]
     if not names:
@@ -59,8 +59,8 @@ def unused_keys(section: DynamicsSection) -> list[str]:
 
 
 def prepared_folder(out: Path, resume: bool, overwrite: bool) -> list[str]:
-    """Looks at the folder, and removes the cases of an earlier call with `overwrite`. Returns a sentence where there is
-    nothing to go on from. Raises FolderError where files of others would be lost, or results unasked."""
+    """Checks the folder, and removes the cases of an earlier call with `overwrite`. Returns a sentence where there is
+    nothing to resume. Raises FolderError where files of others would be lost, or results without `overwrite`."""
     every = *WRITTEN, KEPT_CASES
     said = require_unfinished(out, every, (KEPT_STATIC, TRANSIENT.name), "cases", resume, overwrite)
     if not resume:

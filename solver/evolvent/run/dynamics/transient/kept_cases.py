@@ -1,4 +1,4 @@
-"""Cases of a transient on disk: a call that was stopped goes on with those that are missing.
+"""Cases of a transient on disk: a call that was stopped resumes with those that are missing.
 
     OUT/results/transient_static.npz       the positions without inertia, at each friction coefficient
     OUT/results/transient_1500rpm_0.npz    a speed whose motion has ended, at the first friction coefficient
@@ -35,13 +35,13 @@ from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.gears.pair import GearPair
 
 COARSE, FINER_STEPS = "_coarse", "_finer"
-"""Kinds of cases: those of the companion, in the time steps of the scene and in shorter ones."""
+"""Kinds of cases of the companion: in the time steps of the scene, and in shorter ones."""
 BEGINNING = "beginning/"
 
 
 @dataclass(frozen=True)
 class Statics:
-    """A certified pitch without inertia."""
+    """Static positions of a transient: a certified pitch without inertia."""
 
     positions: tuple[tuple[PositionResult, ...], ...]
     """Results of the pitch at each friction coefficient."""
@@ -51,23 +51,23 @@ class Statics:
 
 @dataclass(frozen=True)
 class KeptCases:
-    """Of one scene."""
+    """Archived cases and static positions of a scene."""
 
     cases: Store
     """Files with the identity of everything in the scene that a case depends on."""
     statics: Store
     """Files with the identity of what the positions without inertia depend on."""
     names: tuple[str, ...]
-    """Of the cases by their numbers, every speed at every friction coefficient."""
+    """Names of the cases by their numbers: every speed at every friction coefficient."""
     pair: GearPair
-    """The gears."""
+    """Geometry of the gear pair."""
     kind: str = ""
-    """Of the cases."""
+    """Kind of the cases: empty for those that are reported, else `COARSE` or `FINER_STEPS`."""
 
     @staticmethod
     def of(scene: Scene, pair: GearPair, out: Path, kind: str = "") -> KeptCases:
-        """Below OUT. scene: with a section [transient]. kind: empty for those that are reported, else `COARSE` or
-        `FINER_STEPS`."""
+        """Archived cases of a scene with a section [transient], below OUT. kind: empty for those that are reported,
+        else `COARSE` or `FINER_STEPS`."""
         section = transient_section(scene)
         names = [f"{speed:.17g}rpm_{i}" for speed in section.speeds_rpm for i in range(len(scene.contact.friction))]
         highest = (max(section.speeds_rpm),) if section.modes_per_harmonic is None else ()
@@ -77,23 +77,23 @@ class KeptCases:
         return KeptCases(cases, statics, tuple(names), pair, kind)
 
     def read_static(self) -> Statics | None:
-        """None where there are none. Raises ArchiveError."""
+        """The archived static positions; None where there are none. Raises ArchiveError."""
         return self.statics.read(self._name("static"), self._static)
 
     def write_static(self, static: Statics) -> None:
-        """Keeps the positions without inertia. Raises WriteError, FolderError."""
+        """Archives the positions without inertia. Raises WriteError, FolderError."""
         arrays: Arrays = {"count": len(static.positions), "deflected": static.deflected}
         for i, results in enumerate(static.positions):
             arrays |= _positions_arrays(results, f"{i}/")
         self.statics.write(self._name("static"), arrays)
 
     def read(self) -> dict[int, MeshPeriods]:
-        """Number of a case that has ended -> its motion. Raises ArchiveError."""
+        """Number of a finished case -> its mesh periods. Raises ArchiveError."""
         read = {number: self.cases.read(self._name(name), self._periods) for number, name in enumerate(self.names)}
         return {number: periods for number, periods in read.items() if periods is not None}
 
     def write(self, number: int, found: MeshPeriods) -> None:
-        """Keeps a case. Raises WriteError, FolderError."""
+        """Archives a case. Raises WriteError, FolderError."""
         arrays = _moments_arrays(found.moments, "") | _moments_arrays(found.beginning, BEGINNING) | {
             "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
             "residuals": astuple(found.residuals), "lowest_error": found.lowest_error,
@@ -125,7 +125,7 @@ class KeptCases:
 
 
 def another(path: Path) -> str:
-    """Message on a case or on statics of another scene."""
+    """Message on an archived case or on static positions of another scene."""
     return (
         f"{path}: wanted a result of this scene, found that of another one; --resume goes on with the scene and the "
         "settings that it was called with, to which lower speeds may be added, with transient.modes_per_harmonic "
@@ -134,12 +134,12 @@ def another(path: Path) -> str:
 
 
 def _fingerprint(scene: Scene, section: TransientSection, speeds: tuple[float, ...]) -> str:
-    """Of the scene with these speeds."""
+    """Fingerprint of the scene with these speeds."""
     return fingerprint(scene.model_copy(update={"transient": section.model_copy(update={"speeds_rpm": speeds})}))
 
 
 def _steps(accepted: float, rejected: float, *others: float) -> StepsTaken:
-    """From a row of numbers, of which the first ones are whole."""
+    """Counts and figures of the time steps from an archived row of numbers."""
     return StepsTaken(int(accepted), int(rejected), *others)
 
 

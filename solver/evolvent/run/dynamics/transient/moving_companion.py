@@ -21,16 +21,17 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.skips import wanted_output
 
 MODES = 3
-"""Of each harmonic, at least: with these a small pair whose teeth part and meet has its mesh force within 0.2 % of that
-with all modes, with one within 2 % (tests/solver/dynamics/transient/test_full_gears.py). What the scene sets counts."""
+"""Natural modes of each harmonic of the companion, at least, unless the scene sets their number. With these a small
+pair whose flanks separate and meet has its mesh force within 0.2 % of that with all modes, with one within 2 %
+(tests/solver/dynamics/transient/test_full_gears.py)."""
 
 
 def companion_of(
     scene: Scene, problem: GearProblem, settings: DriveSettings, kept: Callable[[str], KeptCases], comm: MPI.Comm,
     progress: Progress, prepare: Preparer,
 ) -> Attempt[MovingCompanion]:
-    """Its cases on rank 0, none where the scene asks for no error bars. kept: by the kind of cases. Collective. Raises
-    ArchiveError, WriteError, FolderError."""
+    """The companion of a transient, on rank 0; none where the scene asks for no error bars. kept: archive by the kind
+    of cases. Collective. Raises ArchiveError, WriteError, FolderError."""
     if not wanted_output(scene).error_bars:
         return Attempt()
     progress.stage(ERROR_BARS)

@@ -1,4 +1,4 @@
-"""What a reader looks for first in transient.json, a line a speed and friction coefficient."""
+"""Key figures of transient.json in words, a line for each speed and friction coefficient."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ FIGURES = (
     ("peak_to_peak_um", "transmission error", "µm peak to peak", 2),
     ("max_pressure_MPa", "largest pressure", "MPa", 0),
 )
-"""Key, name, unit, decimals."""
+"""Key, name, unit and decimals of each key figure."""
 STATIC = "static_"
 
 
 def summary_lines(folder: Path) -> Iterator[str]:
-    """Each figure with its error bar where there is one, and without inertia behind it, from the folder's table."""
+    """Key figures of each case from the folder's table, with error bars where there are any, and the values without
+    inertia in brackets."""
     for fact in TRANSIENT_FACTS.read(folder):
         parts = []
         for key, name, unit, digits in FIGURES:
@@ -32,7 +33,7 @@ def summary_lines(folder: Path) -> Iterator[str]:
 
 
 def _with_error(fact: TransientFacts, key: str, digits: int) -> str:
-    """A figure with its error bar, where it is known; empty where there is none."""
+    """A figure with its error bar as text; empty where there is none."""
     value: float | None = getattr(fact, key, None)
     if value is None or math.isnan(value):
         return ""

@@ -55,8 +55,9 @@ def run_transient(
     scene: Scene, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False,
     prepare: Preparer = prepare_model,
 ) -> list[str]:
-    """Moves the pair on at each speed and friction coefficient until its motion repeats, and writes tables and picture
-    to `out`. Returns sentences on what a reader has to know. Collective: the ranks share speeds and coefficients.
+    """Computes the transient contact of the pair at each speed and friction coefficient until its motion repeats, and
+    writes tables and picture to `out`. Returns warnings on the results, a sentence each. Collective: the ranks share
+    speeds and coefficients.
 
     scene: with a section [transient]; its wear is left out.
     resume: go on from the statics and the cases that an earlier call has ended.
@@ -93,7 +94,7 @@ def run_transient(
 def _written(
     own: PairCases, found: Mapping[int, MeshPeriods], companion: MovingCompanion | None, out: Path
 ) -> list[str]:
-    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    """Writes all files, in place of those of an earlier call. On rank 0 alone."""
     scene, pair, frictions = own.scene, own.pair, own.scene.contact.friction
     solved = with_deflected_flanks(scene) if own.static.deflected else scene
     loads = [each.drive.torque / each.lever for each in own.loaded()]

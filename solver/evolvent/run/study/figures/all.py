@@ -11,7 +11,7 @@ from evolvent.run.study.figures.study_values import StudyValues
 
 
 def study_pictures(values: StudyValues) -> list[Picture]:
-    """Of those figures that some scene has; none where no scene is done."""
+    """Pictures of those figures that some scene has; none where no scene is done."""
     drawn = [name for name in values.figures if values.has(name)]
     if not drawn:
         return []
@@ -24,7 +24,7 @@ def study_pictures(values: StudyValues) -> list[Picture]:
 
 
 def _bare(name: str) -> str:
-    """Without the friction coefficient behind it."""
+    """Name of a figure without the friction coefficient in brackets."""
     return name.partition(" (")[0]
 
 

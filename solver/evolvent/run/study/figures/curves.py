@@ -23,7 +23,8 @@ def curves_picture(values: StudyValues, names: Sequence[str]) -> bytes:
 
 
 def curves_figure(values: StudyValues, names: Sequence[str]) -> Figure:
-    """A line a figure, with error bars where they are known. names: figures of one unit."""
+    """Figure with a line for each figure of the study, with error bars where they are known. names: figures of one
+    unit."""
     axis, unit = values.axes[0], UNITS.get(ending(names[0].partition(" (")[0]), "")
     figure = sheet(values.title, _subtitle(values, names), (9.6, 5.4))
     axes, order = figure.subplots(), np.argsort(values.points(0), kind="stable")
@@ -45,13 +46,13 @@ def curves_figure(values: StudyValues, names: Sequence[str]) -> Figure:
 
 
 def _label(name: str, unit: bool = True) -> str:
-    """In words, with the friction coefficient behind."""
+    """Name of a figure in words, with the friction coefficient in brackets."""
     figure, space, friction = name.partition(" (")
     return label(figure, unit) + space + friction
 
 
 def _subtitle(values: StudyValues, names: Sequence[str]) -> str:
-    """From where to where the first figure goes."""
+    """Sentence on the smallest and largest value of the first figure."""
     axis, own = values.axes[0], values.of(names[0])
     known = np.flatnonzero(np.isfinite(own))
     low, high = known[np.argmin(own[known])], known[np.argmax(own[known])]

@@ -32,7 +32,8 @@ def map_picture(values: StudyValues, name: str) -> bytes:
 
 
 def map_figure(values: StudyValues, name: str) -> Figure:
-    """A cell for each scene, equally large, with its value; cells of scenes without one are hatched."""
+    """Figure with an equally large cell for each scene that shows its value; cells of scenes without one are hatched.
+    """
     grid, (first, second) = grid_of(values, name), values.axes
     words, space, friction = name.partition(" (")
     figure = sheet(heading(label(words) + space + friction), f"{values.title}. {_range(values, grid)}", (9.6, 6.6))
@@ -64,8 +65,8 @@ def grid_of(values: StudyValues, name: str) -> Floats:
 
 
 def cell_texts(grid: Floats) -> list[list[str]]:
-    """(n, m) the values in words, with as many decimals as give the largest one three digits; empty where there is
-    none. Values of which the least have no digit left then have three digits each."""
+    """(n, m) texts of the values, with as many decimals as give the largest one three digits; empty where there is
+    none. Where the smallest values have no digit left, all have three digits."""
     known = np.abs(grid[np.isfinite(grid)])
     form = ".3g"
     if np.all(known == np.round(known)):
@@ -85,7 +86,7 @@ def _numbers(axes: Axes, grid: Floats, norm: Normalize) -> None:
 
 
 def _range(values: StudyValues, grid: Floats) -> str:
-    """Where the figure is least and largest."""
+    """Sentence on the smallest and largest value of the figure, and at which parameters."""
     said, texts = [], cell_texts(grid)
     for word, place in (("least", np.nanargmin(grid)), ("largest", np.nanargmax(grid))):
         j, i = np.unravel_index(int(place), grid.shape)

@@ -30,7 +30,7 @@ def parallel_picture(values: StudyValues, names: Sequence[str]) -> bytes:
 
 
 def parallel_figure(values: StudyValues, names: Sequence[str]) -> Figure:
-    """Each axis from its lowest value to its highest; lines are coloured by the first figure."""
+    """Figure of parallel axes, each from its lowest value to its highest; lines are coloured by the first figure."""
     shown = list(names[:MOST_FIGURES])
     heads = [*(axis.label for axis in values.axes), *(_label(name) for name in shown)]
     columns = [axis.places[values.points(k)] for k, axis in enumerate(values.axes)]
@@ -65,13 +65,13 @@ def parallel_figure(values: StudyValues, names: Sequence[str]) -> Figure:
 
 
 def _scaled(column: Floats, known: Floats) -> Floats:
-    """From 0 at the lowest value to 1 at the highest; a half where all are alike."""
+    """Values scaled from 0 at the lowest to 1 at the highest; a half where all are alike."""
     low, size = float(known.min()), float(np.ptp(known))
     return (column - low) / size if size > 0.0 else np.full(len(column), 0.5)
 
 
 def _axis(axes: Axes, place: int, known: Floats, texts: Sequence[str] | None) -> None:
-    """An upright line with some of its values. texts: of the different values, None for those of a figure."""
+    """Draws an upright axis with some of its values. texts: of the different values, None for those of a figure."""
     axes.axvline(place, color=FAINT, lw=0.9, zorder=0.5)
     different = np.unique(known)
     if texts is not None and len(different) == len(texts) and len(texts) <= MOST_TICKS:

@@ -1,4 +1,4 @@
-"""What the pictures of a study draw: its axes, and the figures of each scene."""
+"""Data for the pictures of a study: its axes, and the figures of each scene."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from evolvent_meshes.arrays import Floats, Ints
 
 @dataclass(frozen=True)
 class DrawnAxis:
-    """A parameter, or several that take their values together: the first one names it."""
+    """Axis of a picture: a parameter, or several that take their values together, of which the first names it."""
 
     keys: tuple[str, ...]
-    """Of the scene."""
+    """Keys of the scene."""
     values: tuple[Any, ...]
     """The different values of the first key, numbers ascending."""
 
     @property
     def label(self) -> str:
-        """In words."""
+        """Name of the axis in words."""
         others = f", {label(self.keys[1], unit=False)}" if len(self.keys) == 2 else ", ..." if self.keys[2:] else ""
         return label(self.keys[0]) + others
 
@@ -37,17 +37,18 @@ class DrawnAxis:
 
     @property
     def places(self) -> Floats:
-        """(n,) where its values are drawn."""
+        """(n,) coordinates at which the values are drawn."""
         return np.array(self.values if self.is_numeric else range(len(self.values)), dtype=float)
 
     @property
     def texts(self) -> list[str]:
-        """Its values as text; a minus is U+2212."""
+        """Values of the axis as text; a minus is U+2212."""
         shown = [f"{value:.4g}" if isinstance(value, float) else str(value) for value in self.values]
         return [text.replace("-", "−") for text in shown] if self.is_numeric else shown
 
     def said(self, number: int) -> str:
-        """The value with this number in a sentence: with its unit, or with its name where it has none."""
+        """Value of the axis with this index, as part of a sentence: with its unit, or with its name where it has none.
+        """
         unit = UNITS.get(ending(self.keys[0]), "")
         text = self.texts[number]
         return f"{text}{'' if unit == '°' else ' '}{unit}" if unit else f"{label(self.keys[0])} {text}"
@@ -55,33 +56,33 @@ class DrawnAxis:
 
 @dataclass(frozen=True)
 class StudyValues:
-    """The table of a study, as pictures need it."""
+    """Table of a study for pictures."""
 
     title: str
-    """Of the study."""
+    """Title of the study."""
     keys: Sequence[tuple[str, ...]]
     """Keys of each axis."""
     rows: Sequence[TableRow]
-    """Of all scenes."""
+    """Rows of the study's table, one for each scene."""
     columns: Sequence[str]
-    """Figures and their error bars."""
+    """Names of the figures and of their error bars."""
     is_sampled: bool = False
     """Whether the scenes are samples, and not all combinations of the axes' values."""
 
     @cached_property
     def axes(self) -> list[DrawnAxis]:
-        """Of the parameters; each key of a Latin hypercube is one."""
+        """Axes of the parameters; each key of a Latin hypercube is one."""
         return [DrawnAxis(keys, _ascending([row.parameters[keys[0]] for row in self.rows])) for keys in self.keys]
 
     @property
     def figures(self) -> list[str]:
-        """Columns that are no error bars."""
+        """Names of the columns that are no error bars."""
         bars = {_error_name(name) for name in self.columns}
         return [name for name in self.columns if name not in bars]
 
     @property
     def done(self) -> int:
-        """How many scenes are done."""
+        """Number of scenes that are done."""
         return sum(row.status == DONE for row in self.rows)
 
     def has(self, name: str) -> bool:
@@ -97,7 +98,7 @@ class StudyValues:
         return self.of(_error_name(name))
 
     def points(self, axis: int) -> Ints:
-        """(n,) numbers of the values of an axis at which the scenes stand."""
+        """(n,) index of the value of an axis that each scene has."""
         known = {repr(written(value)): number for number, value in enumerate(self.axes[axis].values)}
         first = self.axes[axis].keys[0]
         return np.array([known[repr(written(row.parameters[first]))] for row in self.rows])
@@ -116,7 +117,7 @@ def _error_name(name: str) -> str:
 
 
 def _ascending(values: Sequence[Any]) -> tuple[Any, ...]:
-    """Each value once: numbers ascending, others in their order."""
+    """Distinct values: numbers ascending, others in their order."""
     once = tuple({repr(written(value)): value for value in values}.values())
     numeric = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in once)
     return tuple(sorted(once)) if numeric else tuple(written(value) for value in once)

@@ -1,1 +1,1 @@
-"""What a study computes: its file, its parameters, its scenes."""
+"""Plan of a study: its file, its parameters and its scenes."""

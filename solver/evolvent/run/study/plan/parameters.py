@@ -18,10 +18,10 @@ SampleRow = tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Axis:
-    """Keys that take their values together."""
+    """Axis of a study: keys that take their values together."""
 
     keys: tuple[str, ...]
-    """Of the scene, dotted."""
+    """Dotted keys of the scene."""
     rows: tuple[SampleRow, ...]
     """Values of the keys, one row a point of the axis."""
     is_sampled: bool = False
@@ -29,7 +29,8 @@ class Axis:
 
 
 def axes(study: StudyFile) -> list[Axis]:
-    """Each key of [grid] is an axis of its own, the keys of [list] are one together, and those of [latin_hypercube]."""
+    """Axes of a study: one for each key of [grid], one for all keys of [list] and one for those of [latin_hypercube].
+    """
     found = [Axis((name,), tuple((value,) for value in values)) for name, values in study.grid.items()]
     if study.list:
         found.append(Axis(tuple(study.list), tuple(zip(*study.list.values()))))
@@ -39,7 +40,7 @@ def axes(study: StudyFile) -> list[Axis]:
 
 
 def combinations(axes: Sequence[Axis]) -> Iterator[Mapping[str, Any]]:
-    """Key -> value, of each scene: all combinations of the points of the axes, the last axis varying fastest."""
+    """Key -> value, for each scene: all combinations of the points of the axes, the last axis varying fastest."""
     for rows in product(*(axis.rows for axis in axes)):
         yield {name: value for axis, row in zip(axes, rows) for name, value in zip(axis.keys, row)}
 

@@ -1,4 +1,4 @@
-"""Which scenes of a study have the same condensed gears.
+"""Scenes of a study that share condensed gears.
 
 The compliance of gears depends neither on friction nor on misalignment, and on the torque by their meshes only, which
 may serve a range of torques.
@@ -24,30 +24,31 @@ from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
 
 SHARING: tuple[Computation, ...] = ("run", "excitation", "dynamics", "strength")
-"""Computations whose scenes can share gears. Wear has flanks of its own."""
+"""Computations whose scenes can share gears. Scenes with wear have flanks of their own."""
 
 
 def meshes(scene: Scene, compute: Computation) -> tuple[Mesher, ...]:
-    """From which a scene's gears are condensed: for results, and for error bars where it asks for them."""
+    """Meshes from which a scene's gears are condensed: those of the results, and those of error bars where it asks for
+    them."""
     both = scene_root_meshes(scene) if compute == "strength" else (run_mesh, companion_mesh)
     return both if wanted_output(scene).error_bars else both[:1]
 
 
 def own_torque(scene: Scene) -> SceneTorques:
-    """For the excitation of a scene under its own torque."""
+    """Torques of an excitation of a scene: its own torque alone."""
     return SceneTorques(scene.model_copy(update={"wear": None}), (1e3 * scene.load.torque_Nm,))
 
 
 def condensed_problem(scene: Scene, compute: Computation) -> GearProblem:
-    """The problem whose gears a computation condenses. Raises SceneError."""
+    """Gear problem that a computation of the scene condenses. Raises SceneError."""
     if compute == "dynamics":
         return scene_torques(scene, (scene.dynamics or DynamicsSection()).torque_percents).problem
     return gear_problem(scene)
 
 
 def on_shared_meshes(scenes: Sequence[Scene], compute: Computation) -> list[Scene]:
-    """The scenes on meshes that serve all torques under which the same gears stand among them; those of an excitation
-    are sized for the heaviest one, as `evolvent.run.dynamics.scene_torques` says why."""
+    """The scenes, those with the same gears on meshes that serve all of their torques. Those of an excitation are sized
+    for the heaviest one, for the reason in `evolvent.run.dynamics.scene_torques`."""
     if compute not in SHARING or compute == "dynamics":  # which has meshes for a range of torques of its own
         return list(scenes)
     torques: dict[str, set[float]] = defaultdict(set)
@@ -78,7 +79,7 @@ def _without_torque(scene: Scene) -> str:
 
 
 def _serving(scene: Scene, torques: tuple[float, float]) -> Scene:
-    """On meshes for a range of torques [N·m], unless it says itself for which."""
+    """The scene on meshes for a range of torques [N·m], unless it gives such a range itself."""
     if torques == (scene.load.torque_Nm, scene.load.torque_Nm) or scene.load.mesh_torques_Nm is not None:
         return scene
     load = scene.load.model_copy(update={"mesh_torques_Nm": torques})

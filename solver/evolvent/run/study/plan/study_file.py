@@ -21,10 +21,10 @@ COMPUTATIONS: tuple[Computation, ...] = get_args(Computation)
 MOST_SCENES = 1_000_000
 """Largest number of scenes of a study."""
 PARTS = "grid", "list", "latin_hypercube.ranges"
-"""Where parameters stand."""
+"""Sections of a study file that hold parameters."""
 EXAMPLE = "write for example load.torque_Nm = [100.0, 200.0]"
 NAMED = 5
-"""Largest number of wrong values in a message."""
+"""Largest number of wrong values that a message names."""
 
 
 def flat(values: Any) -> Any:
@@ -42,7 +42,7 @@ def _flat(values: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
 
 
 def _tuples(values: Any) -> Any:
-    """Dotted keys with tuples in place of lists."""
+    """Values by dotted keys, with tuples in place of lists."""
     flattened = flat(values)
     if not isinstance(flattened, dict):
         return flattened

@@ -19,9 +19,9 @@ from evolvent.scene.scene_text import apply_override, nested_values, scene_text
 from evolvent.scene.schema.errors import InputProblem, shown
 
 NAME = 16
-"""Digits of a scene's name."""
+"""Number of digits of a scene's name."""
 NOT_DRAWN = {"pictures": False, "animation": False, "fields": False}
-"""Output that scenes of a study leave out unless the study sets it."""
+"""Keys of [output] that scenes of a study leave out unless the study sets them."""
 Values = dict[str, Any]
 
 
@@ -30,15 +30,15 @@ class StudyScene:
     """A scene of a study, or the reason why there is none."""
 
     parameters: Mapping[str, Any]
-    """Key -> value."""
+    """Key of the scene -> value."""
     scene: Scene | None
-    """None where the values are refused."""
+    """Validated scene; None where the values are refused."""
     refusal: str
-    """Why they are refused; empty where they are not."""
+    """Why the values are refused; empty where they are not."""
     name: str
-    """Of its content: of all that its results depend on, and of what is computed."""
+    """Hash of everything that the results of the scene depend on, and of the computation."""
     gears: str
-    """Name of the condensed gears that it can share; empty where it has its own."""
+    """Name of the condensed gears that the scene can share; empty where it has its own."""
 
 
 def study_scenes(study: StudyFile, path: Path, overrides: Sequence[str], version: str) -> list[StudyScene]:
@@ -64,7 +64,7 @@ def study_scenes(study: StudyFile, path: Path, overrides: Sequence[str], version
 
 
 def _counted(count: int) -> str:
-    """How many scenes are refused, which are all that there are."""
+    """Number of refused scenes in words, where all of a study are refused."""
     return "its scene" if count == 1 else f"all of its {count:,} scenes are refused, the first one for"
 
 
@@ -104,7 +104,7 @@ def _put(values: Values, name: str, value: Any, folder: Path) -> None:
 
 
 def _take_out(values: Values, name: str) -> None:
-    """Removes a dotted key, where it is there."""
+    """Removes a dotted key, if it is given."""
     *sections, last = name.split(".")
     for section in sections:
         values = values.get(section, {})
@@ -112,7 +112,8 @@ def _take_out(values: Values, name: str) -> None:
 
 
 def _sharing(scenes: Sequence[StudyScene], compute: Computation) -> list[StudyScene]:
-    """With the names of the gears that several scenes share, on meshes that serve the torques of all of these."""
+    """The scenes with the names of the gears that several of them share, on meshes that serve the torques of all of
+    these."""
     known = {number: each.scene for number, each in enumerate(scenes) if each.scene is not None}
     served = dict(zip(known, on_shared_meshes(list(known.values()), compute)))
     names = dict(zip(known, gears_names(list(served.values()), compute)))
@@ -123,7 +124,7 @@ def _sharing(scenes: Sequence[StudyScene], compute: Computation) -> list[StudySc
 
 
 def _name(each: StudyScene, study: StudyFile, version: str) -> str:
-    """Digits of a SHA-256. Excitations may share the search of their positions, which is not exact."""
+    """Name of a scene: digits of a SHA-256. Excitations may share the search of their positions, which is not exact."""
     content: list[Any]
     shared = study.compute == "excitation" and study.share_gears
     if each.scene is None:

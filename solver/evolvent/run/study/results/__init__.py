@@ -1,1 +1,1 @@
-"""What a study gives: records of scenes, figures, table and pictures."""
+"""Results of a study: records of scenes, figures, table and pictures."""

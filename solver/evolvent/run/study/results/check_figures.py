@@ -1,4 +1,4 @@
-"""What `check` of a study finds of a scene without computing it: figures of its geometry, load and size."""
+"""Figures of a scene that `check` of a study gives without computing it: geometry, load and size."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ REPORT = "check.txt"
 
 @dataclass(frozen=True)
 class CheckFigures:
-    """check.json: what follows from a scene before it is computed."""
+    """check.json: figures of a scene that are known before it is computed."""
 
     centre_distance_mm: float
-    """a."""
+    """Centre distance a."""
     transverse_contact_ratio: float
-    """ε_α."""
+    """Transverse contact ratio ε_α."""
     overlap_ratio: float
-    """ε_β."""
+    """Overlap ratio ε_β."""
     total_contact_ratio: float
-    """ε_γ."""
+    """Total contact ratio ε_γ."""
     normal_backlash_um: float
-    """j_bn."""
+    """Normal backlash j_bn."""
     pinion_tip_thickness_mm: float
-    """Normal tooth thickness at the tip, s_an, without chamfer or rounding, which leave less."""
+    """Normal tooth thickness at the tip of the pinion, s_an, without chamfer or rounding, which leave less."""
     wheel_tip_thickness_mm: float
-    """The same of the wheel."""
+    """Normal tooth thickness at the tip of the wheel, s_an, without chamfer or rounding, which leave less."""
     pitch_point_pressure_MPa: float
     """Hertz pressure at the pitch point, on the mean length of the contact lines."""
     degrees_of_freedom: int
-    """Of one sector of both gears."""
+    """Degrees of freedom of one sector of both gears."""
     memory_MB: float
-    """Of a run on one rank, estimated."""
+    """Largest memory of a run on one rank, estimated."""
 
 
 CHECK = Record("check.json", CheckFigures)
@@ -57,7 +57,7 @@ def run_check(scene: Scene, out: Path) -> list[str]:
 
 
 def check_figures(scene: Scene) -> CheckFigures:
-    """Of a valid scene."""
+    """Figures of a valid scene."""
     pair = scene.gear_pair()
     pinion, wheel = (gear.normal_thickness(gear.tip_diameter) for gear in pair.gears)
     return CheckFigures(

@@ -93,7 +93,7 @@ CATALOGUE: Mapping[Computation, list[Figure]] = {
     "check": _of_check(), "run": _of_run(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
     "strength": _of_strength(), "wear": _of_wear(),
 }
-"""Figures with a name, by computation."""
+"""Computation -> named figures that its scenes have."""
 DEFAULTS: Mapping[Computation, tuple[str, ...]] = {
     "check": ("transverse_contact_ratio", "total_contact_ratio", "pitch_point_pressure_MPa", "pinion_tip_thickness_mm",
               "wheel_tip_thickness_mm"),
@@ -106,7 +106,7 @@ DEFAULTS: Mapping[Computation, tuple[str, ...]] = {
     "wear": ("pinion_deepest_um", "wheel_deepest_um", "worn_max_pressure_MPa",
              "worn_transmission_error_peak_to_peak_um"),
 }
-"""Names of the figures that are gathered where a study names none."""
+"""Computation -> names of the figures that are gathered where a study names none."""
 
 
 def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
@@ -131,7 +131,7 @@ def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
 
 
 def _require_own_columns(own: Sequence[Figure], study: StudyFile, source: str) -> None:
-    """Raises SceneError where a figure of one's own has the name of another column of the table."""
+    """Raises SceneError where a [[figure]] has the name of another column of the table."""
     parameters = [key for keys in study.parts().values() for key in keys]
     errors = [f"{each.name}{ERROR}" for each in CATALOGUE[study.compute] if each.error]
     for number, figure in enumerate(own):

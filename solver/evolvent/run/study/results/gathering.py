@@ -15,12 +15,12 @@ from evolvent.results.tables.table import csv_rows
 from evolvent_meshes.text_files import UnreadableText, read_text
 
 ERROR = "_error"
-"""Behind the name of a figure: its estimated error."""
+"""End of the name of a column with the estimated error of a figure."""
 STATISTICS: Mapping[str, Callable[[Sequence[float]], float]] = {
     "max": max, "min": min, "mean": fmean, "last": lambda values: values[-1],
     "peak_to_peak": lambda values: max(values) - min(values),
 }
-"""What is taken of several rows."""
+"""Name of a statistic -> function that reduces the values of several rows to one."""
 ONLY = "only"
 MEGABYTES = 200
 """Size of the largest table that is read [MB]."""
@@ -29,22 +29,22 @@ Row = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Figure:
-    """Where a figure stands."""
+    """A figure of a study: its column, and the file, rows and column that it is read from."""
 
     name: str
-    """Of its column in the study's table."""
+    """Name of the column in the study's table."""
     file: str
     """CSV or JSON file in a scene's folder."""
     column: str
-    """Of the CSV file, or key of the JSON file; dotted where it lies deeper."""
+    """Column of the CSV file, or key of the JSON file; dotted where it lies deeper."""
     rows: str = ""
-    """Key of a JSON file's list whose entries are its rows; empty: the file itself is the only row."""
+    """Key of the list in a JSON file whose entries are the rows; empty: the file itself is the only row."""
     where: Mapping[str, str | int | float] = field(default_factory=dict)
-    """Column -> value that a row has."""
+    """Column -> value, by which the rows are selected."""
     statistic: str = ONLY
-    """What is taken of several rows; "only": there is one."""
+    """Key of `STATISTICS` for several rows; "only": there is one row."""
     error: str = ""
-    """Column of its estimated error; empty where there is none."""
+    """Column of the estimated error; empty where there is none."""
 
 
 class Gathering:
@@ -72,7 +72,7 @@ class Gathering:
         return bool(self._rows(figure.file, figure.rows))
 
     def why_missing(self, figure: Figure) -> str:
-        """Why a figure has no value here, for a reader; empty where its cell is left empty by the computation."""
+        """Reason why a figure has no value here; empty where the computation leaves its cell empty."""
         read = self._rows(figure.file, figure.rows)
         rows = [row for group in self._by_friction(figure).values() for row in group]
         if not read:
@@ -87,7 +87,7 @@ class Gathering:
         return ""
 
     def _by_friction(self, figure: Figure) -> dict[str, list[Row]]:
-        """The rows of a figure; those of different friction coefficients apart. At least one group."""
+        """Rows of a figure in groups, one for each friction coefficient; at least one group."""
         groups: dict[str, list[Row]] = {}
         for row in self._rows(figure.file, figure.rows):
             if all(_same(_deep(row, name), value) for name, value in figure.where.items()):
@@ -117,7 +117,7 @@ def _read(folder: Path, name: str, rows: str) -> list[Row]:
 
 
 def _deep(row: Any, dotted: str) -> Any:
-    """The value of a dotted key; None where it is not there."""
+    """Value of a dotted key in a row; None where it is missing."""
     if isinstance(row, Mapping) and dotted in row:
         return row[dotted]
     for part in dotted.split("."):
@@ -145,7 +145,7 @@ def _same(found: Any, wanted: str | int | float) -> bool:
 
 
 def _number(value: Any) -> float:
-    """NaN where the value is no finite number."""
+    """A value as a number; NaN where it is no finite number."""
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -154,12 +154,12 @@ def _number(value: Any) -> float:
 
 
 def _numbers(rows: Sequence[Row], column: str) -> list[float]:
-    """Of the rows that have one."""
+    """Numbers (k,) of a column, of the rows that have one."""
     return [number for row in rows if not math.isnan(number := _number(_deep(row, column)))]
 
 
 def _value(rows: Sequence[Row], column: str, statistic: str) -> float:
-    """NaN where no row has a number there, or several rows have where only one is wanted."""
+    """Value of a column over the rows; NaN where no row has a number, or several have where only one is wanted."""
     numbers = _numbers(rows, column)
     if not numbers or (statistic == ONLY and len(numbers) > 1):
         return math.nan

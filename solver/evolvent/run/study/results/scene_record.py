@@ -1,4 +1,4 @@
-"""What became of a scene of a study: a file in its folder, written last, by which it is recognised as computed."""
+"""Outcome of a scene of a study: a file in its folder, written last, as the completion marker."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ Status = Literal["done", "failed", "refused"]
 
 @dataclass(frozen=True)
 class SceneRecord:
-    """study_scene.json: what became of a scene."""
+    """study_scene.json: outcome of a scene."""
 
     name: str
-    """Of its content, and of its folder."""
+    """Hash of the scene's content, and name of its folder."""
     compute: str
-    """What was computed."""
+    """Computation, as `compute` of the study file names it."""
     status: Status
     """done, failed (the computation ended with an error), or refused (its values are no scene)."""
     reason: str
-    """Why it failed or was refused; empty where it is done."""
+    """Why the scene failed or was refused; empty where it is done."""
     warnings: tuple[str, ...]
-    """What a reader has to know, a sentence each."""
+    """Warnings of the computation, a sentence each."""
     seconds: float
     """Wall time of the computation."""
 
@@ -39,17 +39,17 @@ RECORD, VALID = Record("study_scene.json", SceneRecord), TypeAdapter(SceneRecord
 
 
 def scene_folder(out: Path, name: str) -> Path:
-    """Of a scene, below that of the study."""
+    """Folder of a scene, below that of the study."""
     return out / SCENES / name
 
 
 def write_record(folder: Path, record: SceneRecord) -> None:
-    """Raises WriteError, FolderError."""
+    """Writes study_scene.json. Raises WriteError, FolderError."""
     RECORD.write(RunFolder(folder), record)
 
 
 def read_record(folder: Path) -> SceneRecord | None:
-    """None where the scene was not computed to the end, or its record cannot be read."""
+    """The record of a scene; None where the scene was not computed to the end, or its record cannot be read."""
     try:
         record = VALID.validate_json(read_text(folder / RECORD.name, "JSON", 1))
     except (UnreadableText, ValueError):  # ValueError: pydantic's, of a record that was cut off, or is none

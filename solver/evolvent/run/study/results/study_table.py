@@ -1,4 +1,4 @@
-"""The table of a study: a row a scene, with its parameters, the gathered figures, and what became of it."""
+"""Table of a study: a row for each scene, with its parameters, gathered figures and status."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from evolvent.run.study.results.scene_record import SCENES, SceneRecord, scene_f
 
 TABLE, PARQUET = "study.csv", "study.parquet"
 OWN = "status", "reason", "folder", "seconds"
-"""Columns behind the figures."""
+"""Columns behind the figures: status, reason, folder and time."""
 WAITING, DONE = "waiting", "done"
 WRITERS = "pandas", "pyarrow"
 """Packages that write Parquet; Debian has no pyarrow."""
@@ -27,23 +27,25 @@ WRITERS = "pandas", "pyarrow"
 
 @dataclass(frozen=True)
 class TableRow:
-    """A row of study.csv: first the parameters, each by its key, then the figures, then what follows here."""
+    """A row of study.csv: first the parameters, each by its key, then the figures, then status, reason, folder and
+    time."""
 
     parameters: Mapping[str, Any]
     """Key of the scene -> value."""
     figures: Mapping[str, float]
     """Figure -> value, NaN where the scene has none; with error bars in a column `..._error` behind it."""
     status: str
-    """done; failed: the computation ended with an error; refused: the values are no scene; waiting: to come."""
+    """Status of the scene. done; failed: the computation ended with an error; refused: the values are no valid scene;
+    waiting: not computed yet."""
     reason: str
     """Why a scene failed or was refused."""
     folder: str
-    """Of the scene, below that of the study."""
+    """Folder of the scene, below that of the study."""
     seconds: float | None
     """Wall time of the scene."""
 
     def flat(self, figures: Sequence[str]) -> dict[str, object]:
-        """As it is written. figures: columns of all rows."""
+        """The row as it is written. figures: columns of all rows."""
         values = {name: self.figures.get(name, float("nan")) for name in figures}
         own = dict(zip(OWN, (self.status, self.reason, self.folder, self.seconds)))
         return {**{name: written(value) for name, value in self.parameters.items()}, **values, **own}
@@ -55,7 +57,7 @@ def written(value: Any) -> object:
 
 
 def table_row(scene: StudyScene, record: SceneRecord | None, out: Path, figures: Sequence[Figure]) -> TableRow:
-    """Of a scene. record: None where it waits."""
+    """Row of a scene in the study's table. record: None where it is not computed yet."""
     if record is None:
         return TableRow(scene.parameters, {}, WAITING, "", "", None)
     if record.status != DONE:
@@ -91,7 +93,7 @@ def missing_figures(rows: Sequence[TableRow], figures: Sequence[Figure], named: 
 
 
 def _values(row: TableRow, name: str) -> list[float]:
-    """Of a figure, at each friction coefficient."""
+    """Values of a figure, one for each friction coefficient."""
     return [value for column, value in row.figures.items() if column.partition(" (")[0] == name]
 
 

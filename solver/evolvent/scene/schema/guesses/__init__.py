@@ -1,1 +1,1 @@
-"""What was meant by an unknown key or a value that is not allowed."""
+"""Suggestions for unknown keys and for values that are not allowed."""

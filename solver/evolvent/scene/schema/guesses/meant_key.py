@@ -1,4 +1,4 @@
-"""Guesses what was meant by an unknown key or section: by tables of words, by its spelling, by its name elsewhere."""
+"""Suggestions for an unknown key or section: by tables of words, by its spelling, by its name elsewhere."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from evolvent.scene.schema.guesses.terms import Meant, meant_by
 from evolvent.scene.schema.guesses.units import are_of_one_quantity, stem_of
 
 KEY_TERMS = {"scene": (*GEAR_TERMS, *OTHER_TERMS), "study": STUDY_TERMS}
-"""Kind of file -> words for keys."""
+"""Kind of file -> terms for its keys."""
 DEEP = 2
-"""Dots of keys that are not looked for elsewhere: those of gauges and of the materials of single gears."""
+"""Number of dots of keys that are not suggested in other sections: those of gauges and of the materials of single
+gears."""
 
 
 def meant_key(name: str, section: str, here: Collection[str], everywhere: Collection[str], kind: str) -> Meant | None:
-    """What was meant by an unknown key; None where nothing is known of it.
+    """Probable meaning of an unknown key; None where there is none.
 
     section:    dotted, that it is in; empty for the top of the file.
     here:       dotted keys of this section.
@@ -37,8 +38,8 @@ def meant_key(name: str, section: str, here: Collection[str], everywhere: Collec
 
 
 def meant_section(name: str, parent: str, here: Collection[str], kind: str) -> Meant | None:
-    """What was meant by an unknown section; None where nothing is known of it. Parameters: as of `meant_key`, of
-    sections."""
+    """Probable meaning of an unknown section; None where there is none. Parameters as of `meant_key`, with sections in
+    place of keys."""
     terms = SECTION_TERMS if kind == "scene" else STUDY_TERMS
     if meant := meant_by(name.lower(), parent, terms):
         return meant

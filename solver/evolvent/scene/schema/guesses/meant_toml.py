@@ -1,4 +1,4 @@
-"""Guesses what was meant by a line that is no TOML: numbers and texts as they are written elsewhere."""
+"""Suggestions for a line that is no TOML: numbers and texts as they are written elsewhere."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ QUOTED = re.compile(r"\"(?:\\.|[^\"\\])*\"|'[^']*'")
 
 @dataclass(frozen=True)
 class WrittenOtherwise:
-    """What is wrong with a text that is no TOML, and how TOML writes it."""
+    """Error in a text that is no TOML, and its form in TOML."""
 
     found: str
-    """The part, and what it is."""
+    """Part of the text that is no TOML, and its description."""
     remedy: str
-    """What to write."""
+    """Remedy: how to write the part in TOML."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,11 @@ class _Habit:
     """A way of writing that TOML does not have."""
 
     pattern: str
-    """Of the part, in a value without its quoted texts."""
+    """Regular expression for the part, in a value without its quoted texts."""
     name: str
-    """What the part is."""
+    """Description of the part."""
     written: Callable[[str], str]
-    """The part -> what to do."""
+    """Function from the part to the remedy."""
 
 
 HABITS: tuple[_Habit, ...] = (
@@ -69,7 +69,7 @@ HABITS: tuple[_Habit, ...] = (
 
 
 def written_otherwise(line: str) -> WrittenOtherwise | None:
-    """What is wrong with a line `key = value` that is no TOML; None where nothing is known of it."""
+    """Error in a line `key = value` that is no TOML, with a remedy; None where it is not known."""
     _, equals, value = line.partition("=")
     if not equals:
         yaml = re.fullmatch(r"\s*[\w.-]+\s*:\s.*", line)
@@ -78,7 +78,8 @@ def written_otherwise(line: str) -> WrittenOtherwise | None:
 
 
 def value_written_otherwise(value: str) -> WrittenOtherwise | None:
-    """The same of a value alone; None, too, where it is TOML or has control characters."""
+    """Error in a value that is no TOML, with a remedy; None where it is not known, is TOML or has control characters.
+    """
     if _is_toml(value) or CONTROL.search(value):
         return None
     plain = QUOTED.sub('""', value).partition("#")[0]

@@ -1,4 +1,4 @@
-"""Guesses the value that was meant by one of the wrong type or spelling: 20 by 20.0 or "20", "quick" by "Quick"."""
+"""Suggestions for a value of the wrong type or spelling: 20 for 20.0 or "20", "quick" for "Quick"."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from evolvent.scene.schema.guesses.value_words import values_meant
 ALIKE = 0.75
 """Least similarity of a misspelled word to one that is allowed (difflib's ratio)."""
 LONGEST = 60
-"""Longest text that is tried [characters]."""
+"""Longest text for which a value is suggested [characters]."""
 STRICT = ConfigDict(strict=True, allow_inf_nan=False)
 
 
@@ -30,7 +30,7 @@ def meant_value(value: Any, field: FieldInfo) -> Any | None:
 
 
 def expected(kind: str, value: Any) -> str:
-    """What to write instead of a value of the wrong type.
+    """Remedy for a value of the wrong type.
 
     kind: type of pydantic's error. Empty where the remedy of the key says it.
     """
@@ -50,7 +50,7 @@ def _fits(value: Any, adapter: TypeAdapter[Any]) -> bool:
 
 
 def _words_like(value: Any, annotation: Any) -> list[Any]:
-    """What a word may stand for, and allowed words that are spelled much alike."""
+    """Values that a word may stand for, and allowed words of similar spelling."""
     if not isinstance(value, str) or len(value) > LONGEST:
         return []
     return [*values_meant(value), *difflib.get_close_matches(value.lower(), _choices(annotation), 1, ALIKE)]
@@ -64,7 +64,7 @@ def _choices(annotation: Any) -> list[str]:
 
 
 def _near(value: Any) -> Iterator[Any]:
-    """Values that may be meant by a value."""
+    """Values that may be meant by a given value."""
     if isinstance(value, float) and value.is_integer():
         yield int(value)
     elif isinstance(value, list) and len(value) == 1:

@@ -1,4 +1,4 @@
-"""Guesses the key that was meant by one that is spelled otherwise."""
+"""Suggestion of the key that is spelled most like an unknown one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from evolvent.scene.schema.guesses.units import are_of_one_quantity, stem_of
 ALIKE = 0.85
 """Least similarity of two keys without their units (difflib's ratio)."""
 ALIKE_WORDS = 0.7
-"""Least similarity of each of their words: `root_relief` is no `end_relief`."""
+"""Least similarity of each pair of words of two keys: `root_relief` is no `end_relief`."""
 SHORT = 3
 """Words of at most so many letters are alike only where they are equal, or one is the other without a letter."""
 LONGEST = 60
@@ -27,7 +27,7 @@ def nearest_key(name: str, keys: Iterable[str]) -> str:
 
 
 def likeness(name: str, key: str) -> float:
-    """How alike two keys are, from `ALIKE` to 1; 0 where they are not alike enough."""
+    """Similarity of two keys, from `ALIKE` to 1; 0 where they are not similar enough."""
     one, other = stem_of(name), stem_of(key)
     if one == other:
         return 1.0 + (name.lower() == key.rpartition(".")[2].lower())

@@ -1,4 +1,5 @@
-"""What users may look for in a scene and Evolvent does not compute: patterns of key names, and what to answer."""
+"""Quantities that users may look for in a scene but that Evolvent does not compute: patterns of key names, and answers.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +34,7 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"web|spoke|rib|hole", "a web is a full disc, web_thickness_mm, between rim_thickness_mm and hub_diameter_mm, "
      "without holes, ribs and spokes"),
 )
-"""Regular expression for the name of an unknown key, perhaps behind its section's, and what to answer."""
+"""Regular expression for the name of an unknown key, perhaps behind its section's, and the answer."""
 
 
 OUTSIDE_DYNAMICS: tuple[tuple[str, str], ...] = (
@@ -41,7 +42,7 @@ OUTSIDE_DYNAMICS: tuple[tuple[str, str], ...] = (
      "a run is quasi-static"),
     (r"dynamic|damping|inertia|mass|density|vibration|noise|nvh", "a run is quasi-static; that is for [dynamics]"),
 )
-"""The same, of other sections than those of `IN_TIME`."""
+"""Regular expression for the name of an unknown key outside the sections `IN_TIME`, and the answer."""
 IN_TIME = ("dynamics", "transient")
 """Sections with speeds and inertia."""
 

@@ -166,4 +166,4 @@ STUDY_TERMS: tuple[Term, ...] = (
     Term("name description project", ("title",)),
     Term("workers processes threads parallel jobs", (), "workers are given on the command line: --workers N"),
 )
-"""Of study files."""
+"""Words of users for the keys and sections of study files."""

@@ -1,4 +1,4 @@
-"""Words of users for a quantity, and what a scene has in its place: the form of the tables beside, and the search."""
+"""Tables of terms: words of users for a quantity, and the keys of a scene for it."""
 
 from __future__ import annotations
 
@@ -7,37 +7,37 @@ from dataclasses import dataclass
 
 GEARS = ("pinion", "wheel")
 GEAR = "gear"
-"""In tables: the section of either gear."""
+"""Section of either gear in the tables of terms."""
 
 
 @dataclass(frozen=True)
 class Term:
-    """Words for one quantity."""
+    """Words of users for one quantity."""
 
     words: str
-    """Separated by spaces, in lower case, without their unit. One that means this in one section only has the section
-    in front: `pair.a`."""
+    """The words, separated by spaces, in lower case, without their unit. A word that has this meaning in one section
+    only has the section in front: `pair.a`."""
     keys: tuple[str, ...] = ()
     """Dotted keys of the scene that hold the quantity; `gear.` stands for `pinion.` or `wheel.`. Without any the scene
     has no key for it."""
     note: str = ""
-    """How a value is converted, if not by its unit; or why there is no key."""
+    """Conversion of the value, if not by its unit; or the reason why there is no key."""
     source: str = ""
-    """The standard, or kind of program, that has these words."""
+    """Standard, or kind of program, that uses these words."""
 
 
 @dataclass(frozen=True)
 class Meant:
-    """What a scene has in place of an unknown key."""
+    """Keys of a scene that an unknown key may stand for."""
 
     keys: tuple[str, ...]
-    """Dotted, as they are written; none where there is no key for it."""
+    """Dotted keys as they are written in the file; none where the scene has no key for it."""
     note: str
-    """As of `Term`."""
+    """Conversion of the value, if not by its unit; or the reason why there is no key."""
 
 
 def meant_by(stem: str, section: str, terms: Iterable[Term]) -> Meant | None:
-    """What a word means in a section; None where no table has it.
+    """Keys that a word stands for in a section; None where no table has it.
 
     stem: the word in lower case, without its unit. section: dotted, empty for the top of the file.
     """
@@ -51,7 +51,7 @@ def meant_by(stem: str, section: str, terms: Iterable[Term]) -> Meant | None:
 
 
 def _both(keys: tuple[str, ...], section: str) -> tuple[str, ...]:
-    """The keys, those of a gear for each gear where the section is not that of one."""
+    """The keys, with those of a gear once for each gear where the section is not that of one."""
     of_gears = GEARS if section not in GEARS else (GEAR,)
     return tuple(
         f"{gear}.{key.removeprefix('gear.')}" if key.startswith("gear.") else key
@@ -60,5 +60,5 @@ def _both(keys: tuple[str, ...], section: str) -> tuple[str, ...]:
 
 
 def _written(key: str, section: str) -> str:
-    """The key of the gear that the section is of; another key as it is."""
+    """A key as it is written in the file: with the gear of the section in place of `gear.`; others unchanged."""
     return f"{section}.{key.removeprefix('gear.')}" if key.startswith("gear.") else key

@@ -1,4 +1,4 @@
-"""Units at the ends of keys, and what converts a value from one to another."""
+"""Units at the ends of keys, and the conversion of a value from one to another."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def stem_of(key: str) -> str:
 
 
 def unit_conversion(name: str, meant: str) -> str:
-    """What makes a value in the unit that ends an unknown key one in the unit of the key that was meant.
+    """Conversion of a value from the unit in the name of an unknown key to that of the key that was meant, in words.
 
     Empty where the two name the same unit, or one of them none that is known.
     """

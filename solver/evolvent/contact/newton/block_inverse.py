@@ -43,7 +43,7 @@ class NearlyNormal:
 
     @property
     def size(self) -> int:
-        """n·k."""
+        """Number of unknowns, n·k."""
         return len(self.modes)
 
     @property
@@ -57,11 +57,11 @@ class NearlyNormal:
         return np.cumsum([0] + [block.shape[0] for block in self.blocks])
 
     def normal(self, k: int) -> NearlyNormal:
-        """That of the normal components."""
+        """Approximate compliance between normal components alone."""
         return NearlyNormal(self.blocks, self.modes[::k], self.couplings)
 
     def with_modes(self, other: NearlyNormal) -> NearlyNormal:
-        """With the modes of another one added."""
+        """Approximate compliance with the modes of another one added."""
         couplings = np.concatenate([self.couplings, other.couplings])
         return NearlyNormal(self.blocks, np.hstack([self.modes, other.modes]), couplings)
 
@@ -72,7 +72,7 @@ class NearlyNormal:
 
     @staticmethod
     def sum(parts: Sequence[NearlyNormal]) -> NearlyNormal:
-        """Of bodies with the same blocks of nodes."""
+        """Sum of the approximate compliances of bodies with the same blocks of nodes."""
         blocks = tuple(sum(each[1:], each[0]) for each in zip(*(part.blocks for part in parts)))
         return NearlyNormal(
             blocks, np.hstack([p.modes for p in parts]), np.concatenate([p.couplings for p in parts])

@@ -81,7 +81,7 @@ class CondensedSystem:
 
 @dataclass(frozen=True)
 class _State:
-    """What the contact law makes of some x.
+    """Contact forces and values of the contact law at some unknowns x.
 
     force: nodal forces f (n, k) [N].
     jump: J (n, k) [mm].
@@ -116,7 +116,7 @@ class ContactEquations:
         return max(self.system.scale, float(np.abs(self.split(x)[0][:, 0]).sum()))
 
     def state(self, x: Floats) -> _State:
-        """At x; stored, since residual, tangent and work are needed at the same x."""
+        """Contact state at x. It is stored, since residual, tangent and work are needed at the same x."""
         if self._last is None or not np.array_equal(self._last[0], x):
             force, motion = self.split(x)
             jump = self.system.jumps(force, motion)
@@ -135,8 +135,9 @@ class ContactEquations:
         return system.motion.T @ force.ravel() + system.resistance @ motion - system.load
 
     def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
-        """See `NonlinearProblem.work`. The energy ½fᵀAf + ∫(contact) + ½δᵀDδ − Fᵀδ of bodies under any nodal forces f
-        has the derivatives A(f − F(J)) and Hᵀ F(J) + Dδ − F."""
+        """Work of the residual forces at x − α step along the step, as function of α [N·mm]. The energy ½fᵀAf +
+        ∫(contact) + ½δᵀDδ − Fᵀδ of bodies under any nodal forces f has the derivatives A(f − F(J)) and Hᵀ F(J) + Dδ −
+        F."""
         system, (df, dδ), (_, δ) = self.system, self.split(step), self.split(x)
         at = self.state(x)
         after = self.state(x - step)  # stored: the next state if the full step is taken

@@ -26,7 +26,7 @@ class FreeMotion(NotConverged):
 
 @dataclass(frozen=True)
 class FreeMotions:
-    """The jumps that they cause, and what resists them."""
+    """Free rigid motions of bodies: the jumps that they cause, and the forces that resist them."""
 
     jumps: Reals
     """H (m, r), jumps by unit amplitudes."""
@@ -35,20 +35,20 @@ class FreeMotions:
 
     @staticmethod
     def unresisted(jumps: Reals) -> FreeMotions:
-        """Of statics."""
+        """Free rigid motions in statics, without inertia. jumps: H (m, r)."""
         return FreeMotions(jumps, np.zeros((jumps.shape[1],) * 2, dtype=jumps.dtype))
 
     @property
     def count(self) -> int:
-        """r."""
+        """Number r of free rigid motions."""
         return self.jumps.shape[1]
 
     def of(self, unknowns: Ints, dtype: type) -> FreeMotions:
-        """The same with some of the jumps (u,), in a precision."""
+        """Free rigid motions with some of the jumps (u,), in a precision."""
         return FreeMotions(self.jumps[unknowns].astype(dtype), self.resistance.astype(dtype))
 
     def balance(self, force: Reals, motion: Reals) -> Reals:
-        """Hᵀ f + D δ (r,)."""
+        """Residual Hᵀ f + D δ (r,) of the balance of forces on the free rigid motions."""
         return self.jumps.T @ force + self.resistance @ motion
 
 

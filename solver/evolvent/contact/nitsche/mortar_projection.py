@@ -18,10 +18,10 @@ import scipy.sparse.linalg as spla
 from evolvent_meshes.arrays import Floats, Ints
 
 MANY = 0.25
-"""Columns over those of Π itself from which on it is written out: for 360 nodes, as many columns as a compliance has
-take a fifth of the time so, and Π is no larger than they are."""
+"""Number of columns, over those of Π itself, from which on Π is computed as a matrix. With 360 nodes and as many
+columns as a compliance has, this takes a fifth of the time, and Π is no larger than the columns."""
 ROUNDING = 1e-15
-"""Of the projection's largest entry: smaller ones are rounding errors."""
+"""Entry of the projection, over the largest one, below which it is a rounding error."""
 
 
 @dataclass(frozen=True)

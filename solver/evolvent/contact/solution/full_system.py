@@ -66,11 +66,12 @@ class FullContact:
         return (sp.block_diag([self.K, sp.csr_matrix((H.shape[1], H.shape[1]))]) + left.T @ slope @ right).tocsc()
 
     def solve(self, x: Floats, right: Floats) -> Floats:
-        """tangent⁻¹ right."""
+        """Newton step tangent⁻¹ right."""
         return spla.splu(self.tangent(x)).solve(right)
 
     def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
-        """See `NonlinearProblem.work`: the residual is the gradient of the energy."""
+        """Work of the residual forces at x − α step along the step, as function of α [N·mm]: the residual is the
+        gradient of the energy."""
         return lambda α: -float(step @ self.residual(x - α * step))
 
     def scale(self, x: Floats) -> float:
@@ -88,7 +89,8 @@ def full_solution(problem: Problem, step: Step, start: Floats | None = None) -> 
 
 
 def full_equilibrium(step_system: StepSystem, slip: Floats, start: Floats | None = None) -> tuple[Floats, FullContact]:
-    """The same at any step of a sweep; slip: (Σn, d−1) since the step before, as of `StepSystem.slip`."""
+    """Displacements and free motions x (size,) at any step of a sweep, and the system that they solve. slip: (Σn, d−1)
+    since the step before, as of `StepSystem.slip`. start: as of `full_solution`. Raises NotConverged."""
     μ = step_system.friction
     smooth = FullContact(step_system, lambda t: coulomb(t, 0.0), None)
     root = snes.solve(smooth, _bonded(step_system) if start is None else start, "full system", ITERATIONS, 1e-11)

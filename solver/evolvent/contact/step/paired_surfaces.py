@@ -42,7 +42,7 @@ class SurfaceSupports:
 
     @staticmethod
     def of(body: Body, surface: Surface, rotation: Floats) -> SurfaceSupports:
-        """Of a surface of the body."""
+        """Supports of a body on one of its surfaces. rotation: (d, d), from the body's frame to the common one."""
         d = body.mesh.dimension
         held = np.zeros((len(body.mesh.points), d), dtype=bool)
         for support in body.supports:

@@ -1,4 +1,4 @@
-"""What a step of a contact problem results in: the solution, and what the next step needs of it."""
+"""Results of a step of a contact problem: its solution, and the deformed surfaces that the next step needs."""
 
 from __future__ import annotations
 

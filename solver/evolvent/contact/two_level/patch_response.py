@@ -1,4 +1,4 @@
-"""What fine cells change in the response of a contact surface near a load: a patch of the body, condensed twice.
+"""Correction of the response of a contact surface near a load by fine cells: a patch of the body, condensed twice.
 
 The patch is clamped where it is cut out of the body. Its compliance with fine cells, less that with coarse cells,
 transferred to the fine nodes, falls off with the distance from the load like the error of the coarse cells. What the
@@ -24,9 +24,10 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.patches import CUT, Patch, cells_near, cut_out
 
 FEW = 0.15
-"""Of a patch's nodes: where forces act on fewer, a solution for each costs less than eliminating the patch's inside."""
+"""Fraction of a patch's nodes: where forces act on fewer, a solution for each costs less than eliminating the patch's
+inside."""
 Places = Callable[[Floats], Bools]
-"""Which of some points (n, d) [mm] are meant, (n,)."""
+"""Function that selects some of the points (n, d) [mm], (n,) bool."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ class _Condensable:
         return _Condensable(mesh, body.material, surface_of(mesh, body.group), assembled.stiffness, assembled.free)
 
     def within(self, part: Patch, group: str) -> _Condensable:
-        """A part of it, held where that is cut out. All cells of a node that is free there are in the part."""
+        """Part of the patch, held where it is cut out. All cells of a node that is free there are in the part."""
         d = self.mesh.dimension
         dofs = (d * part.nodes[:, None] + np.arange(d)).ravel()
         is_free = np.isin(dofs, self.free)

@@ -16,7 +16,7 @@ class Member(IntEnum):
 
     @property
     def label(self) -> MemberName:
-        """Its name in scene files and reports."""
+        """Name of the gear in scene files and reports."""
         return "pinion" if self is Member.PINION else "wheel"
 
     @property
@@ -29,7 +29,7 @@ class Member(IntEnum):
 
     @property
     def mate(self) -> Member:
-        """The other gear."""
+        """Mating gear."""
         return Member.WHEEL if self is Member.PINION else Member.PINION
 
     @classmethod

@@ -29,7 +29,7 @@ def divided(costs: Sequence[float], busy: Sequence[float]) -> list[list[int]]:
 
 
 def exchanged(comm: MPI.Comm, own: Mapping[K, T]) -> dict[K, T]:
-    """What all ranks have, by different keys, on all ranks; see `shared`. Collective. Raises OSError."""
+    """Union of the mappings of all ranks, on all ranks; their keys differ. Collective. Raises OSError."""
     everything: dict[K, T] = {}
     for root in range(comm.size):
         everything |= shared(comm, own if comm.rank == root else None, root)

@@ -96,7 +96,7 @@ class ContactGeometry:
 
     @cached_property
     def force_points(self) -> tuple[Floats, Floats]:
-        """Where the forces act: the same, displaced as the flanks were when they were searched."""
+        """Points at which the forces act: `points`, displaced as the flanks were when they were searched."""
         result = []
         for gear, points in zip(Member, self.points):
             result.append(np.concatenate([t.displaced_from(gear, x) for t, x in zip(self.teeth, self._split(points))]))
@@ -136,7 +136,8 @@ class ContactGeometry:
 
     @cached_property
     def opposite(self) -> Floats:
-        """(q,) the same on the wheel's flank, of what lies opposite the points; positive towards the wheel's tip."""
+        """Signed distance (q,) [mm of profile arc] of the points' partners on the wheel's flank from the nominal
+        contact line; positive towards the wheel's tip."""
         gear, base = Member.WHEEL, self.bodies[Member.WHEEL].gear.base_radius
         ρ_line = self.stand.pair.pitch_point_roll_lengths[gear] - self.roll_distance
         axis = self.stand.tilt(gear)[: self.d, : self.d]
@@ -182,10 +183,10 @@ class ContactGeometry:
     def compliance(
         self, k: int, threads: Threads = nullcontext, rough: NearlyNormal | None = None
     ) -> JumpCompliance:
-        """Of the first k components of the local jumps, (n·k, n·k): the sum over both gears.
+        """Compliance of the first k components of the local jumps, (n·k, n·k): the sum over both gears.
 
-        threads: in which each gear's is put together. rough: its rough matrix where that is known; only for gears whose
-        compliance is known by products.
+        threads: context in which each gear's is assembled. rough: its approximate matrix where that is known, only for
+        gears whose compliance is applied without a matrix.
         """
         parts = []
         for gear, body in zip(Member, self.bodies):
@@ -205,5 +206,5 @@ class ContactGeometry:
 
 
 def relative_velocity(geometry: ContactGeometry) -> Floats:
-    """(n, d) velocity of pinion over wheel per radian of pinion rotation, local frames."""
+    """Velocity (n, d) of pinion over wheel per radian of pinion rotation, in local frames."""
     return geometry.spins[Member.PINION] - geometry.spins[Member.WHEEL] / geometry.stand.pair.ratio

@@ -56,7 +56,7 @@ class UnsearchedOverlap:
 
 
 def unsearched_overlaps(geometry: ContactGeometry, teeth: tuple[int, ...]) -> tuple[UnsearchedOverlap, ...]:
-    """Of all tooth pairs, for flanks without wear.
+    """Overlaps outside the window of all tooth pairs, for flanks without wear.
 
     Only what overlaps undeformed is looked at, and what a rotation of up to NEARLY can bring to overlap: loaded teeth
     give way, so that flanks apart from the contact move away from each other. And only slices whose contact line is

@@ -1,4 +1,4 @@
-"""What positions must fulfil before they count as results: balance of forces, and of energy over the pitch."""
+"""Conditions on positions that count as results: balance of forces, and of energy over the pitch."""
 
 from __future__ import annotations
 
@@ -50,7 +50,8 @@ def pitch_imbalance(results: Sequence[PositionResult]) -> float:
 
 
 def energy_imbalance(stored: ArrayLike, given: ArrayLike) -> Floats:
-    """The same of stored powers (n, ...) and torques of the pinion (n, ...) at n positions."""
+    """Energy imbalance of a pitch, over its input energy, from stored powers (n, ...) and torques of the pinion (n,
+    ...) at n positions."""
     return np.asarray(np.abs(np.sum(stored, axis=0)) / np.sum(np.abs(given), axis=0))
 
 
@@ -75,7 +76,8 @@ def certify_pitch(positions: Iterable[Sequence[PositionResult]]) -> None:
 
 
 def require_balance(imbalance: float, where: str) -> None:
-    """Raises PitchImbalance where it exceeds `BALANCE_LIMIT`. where: friction coefficient or torque of the pitch."""
+    """Raises PitchImbalance where an energy imbalance exceeds `BALANCE_LIMIT`. where: friction coefficient or torque of
+    the pitch."""
     if not imbalance <= BALANCE_LIMIT:
         raise PitchImbalance(
             f"the pitch {where}: wanted an energy balance within {BALANCE_LIMIT} of the input, found {imbalance:.2e}; "

@@ -39,7 +39,7 @@ class FrictionHistory:
 
     @staticmethod
     def of(model: GearModel, contact: GearContact, equilibrium: Equilibrium) -> FrictionHistory:
-        """Of a converged state."""
+        """Friction history of a converged state."""
         geometry = contact.geometry
         pinion_rows, wheel_rows = (geometry.rows(gear)[0] for gear in Member)
         pinion, wheel = (geometry.flank_forces(gear, equilibrium.force) for gear in Member)
@@ -49,8 +49,8 @@ class FrictionHistory:
         return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
 
     def earlier(self, pitches: int) -> FrictionHistory:
-        """The same so many angular pitches earlier, where other teeth of both gears stand as these do. Teeth without
-        load are left out: the contact need not look at them at that time."""
+        """Friction history moved back by whole angular pitches, where other teeth of both gears stand as these do.
+        Teeth without load are left out: the contact need not look at them at that time."""
         d, angle, step = self.flux.shape[1], 2.0 * np.pi * pitches, np.array([pitches, 0])
         turns = [-gear.sign * angle / self.stand.pair.gears[gear].z for gear in Member]
         loaded = [_on_loaded_teeth(rows, forces) for rows, forces in zip(self.rows, self.forces)]
@@ -92,9 +92,9 @@ def previous_jumps(
 
 
 def previous_friction(geometry: ContactGeometry, history: FrictionHistory) -> Floats:
-    """(n, d−1) contact forces of then on the nodes of the present contact [N; per mm of width in 2D], in the tangent
-    planes of now: where the normals have turned, some of the normal forces, too. Forces on nodes that the present
-    contact does not have are left out."""
+    """Previous contact forces (n, d−1) on the nodes of the present contact [N; per mm of width in 2D], in the present
+    tangent planes: where the normals have turned, they contain some of the normal forces, too. Forces on nodes that the
+    present contact does not have are left out."""
     rows = geometry.rows(Member.PINION)[0]
     forces = np.zeros((len(rows), geometry.d))
     then, now = _shared_rows(history, rows)

@@ -1,4 +1,4 @@
-"""Which gear of a pair: the pinion or the wheel."""
+"""The two gears of a pair: pinion and wheel."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Member(IntEnum):
 
     @property
     def sign(self) -> int:
-        """+1 for the pinion, −1 for the wheel: the sign of quantities that are opposite on the two gears.
+        """Sign of quantities that are opposite on the two gears: +1 for the pinion, −1 for the wheel.
 
         Tooth pair i consists of the teeth sign·i, the roll length increases by sign·ξ, the gap by sign·u.
         """

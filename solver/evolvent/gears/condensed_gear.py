@@ -88,12 +88,12 @@ class GearBody:
 
     @cached_property
     def tip_zone(self) -> Bools:
-        """(n,) bool: the flank nodes on the tip edge."""
+        """Flank nodes (n,) bool on the tip edge."""
         r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
         return r > r.max() - 1e-6 * self.gear.normal_module
 
     def rows(self, tooth: int, nodes: Ints) -> Ints:
-        """(len, 2) rows of the chain for flank nodes of tooth pair i."""
+        """Rows (len, 2) of the chain for flank nodes of tooth pair i."""
         return np.column_stack([np.full(len(nodes), self.member.sign * tooth), nodes])
 
 
@@ -166,7 +166,7 @@ class SectorParts:
     high: Ints
     """Free degrees of freedom of the high cut face, in the order of those of the low one."""
     free: Ints
-    """All free degrees of freedom."""
+    """Numbers of all free degrees of freedom."""
     graph: sp.csr_matrix
     """Pattern (N, N) of the stiffness without Nitsche's term."""
 

@@ -115,7 +115,7 @@ class BlockInverse:
             raise NotConverged("contact: wanted nodes that resist every free rigid motion, found too few") from error
 
     def solve(self, right: Floats) -> Floats:
-        """(f, δ) (u + r,) for (b, c)."""
+        """Solution (f, δ) (u + r,) for a right-hand side (b, c)."""
         b, load = np.split(right, [self._M.shape[0]])
         z = np.zeros(self._M.shape[1])
         for block in self._blocks:
@@ -127,7 +127,7 @@ class BlockInverse:
         return np.concatenate([b - self._M @ z, v[len(v) - len(load) :]]).astype(right.dtype)
 
     def _solved(self, right: Floats) -> Floats:
-        """(I + A_b M_S)⁻¹ right, (s, c)."""
+        """Solution (I + A_b M_S)⁻¹ right of all blocks, (s, c)."""
         result = np.zeros_like(right)
         for block in self._blocks:
             result[block.kept] = block.solved(right[block.kept].astype(np.float32))
@@ -151,7 +151,8 @@ class _Block:
 
     @staticmethod
     def of(block: sp.csr_matrix, node: Ints, axis: Ints, M: sp.csr_matrix, kept: Ints) -> _Block:
-        """block: of its nodes. node: of each active unknown; axis: component, −1 where it is of another contact."""
+        """One contact with the factor of its block. block: of its nodes. node: of each active unknown; axis: component,
+        −1 where it is of another contact."""
         near, mine = np.flatnonzero(axis >= 0), np.flatnonzero(axis[kept] >= 0)
         A = block[node[kept[mine]]]
         mine = mine[reverse_cuthill_mckee(A[:, node[kept[mine]]], symmetric_mode=True)]
@@ -161,16 +162,16 @@ class _Block:
         return _Block(mine, near, A, factor)
 
     def moved(self, b: Floats) -> Singles:
-        """A_b b (s_i,) for forces (u,) on all active unknowns."""
+        """Jumps A_b b (s_i,) for forces (u,) on all active unknowns."""
         return np.asarray(self.A @ b[self.near].astype(np.float32))
 
     def solved(self, right: Singles) -> Singles:
-        """(I + A_b M_S)⁻¹ right, (s_i, ...)."""
+        """Solution (I + A_b M_S)⁻¹ right of the block, (s_i, ...)."""
         return self.factor.solve(right)
 
 
 def _of_components(block: sp.csr_matrix, node: Ints, rows: Ints, columns: Ints) -> sp.csr_matrix:
-    """(s, u) compliance between unknowns from that of normal components (s, nodes): none between different components,
+    """Compliance (s, u) between unknowns from that of normal components (s, nodes): none between different components,
     more between tangential ones. node: (u,); rows, columns: their components."""
     parts, order = [], []
     for axis in np.unique(rows):

@@ -16,7 +16,7 @@ class Inverse(Protocol):
     """An inverse of a tangent, exact or approximate."""
 
     def solve(self, right: Reals) -> Reals:
-        """(f, δ) for a right-hand side, both (u + r,). Raises NotConverged where it is singular."""
+        """Solution (f, δ) for a right-hand side, both (u + r,). Raises NotConverged where it is singular."""
         ...
 
 

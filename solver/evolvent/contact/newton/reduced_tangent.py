@@ -69,12 +69,12 @@ class ReducedTangent:
 
     @staticmethod
     def of(M: sp.csr_matrix, A: Reals, motions: FreeMotions, columns: Ints) -> ReducedTangent:
-        """From M and A, (m, m), the free rigid motions and the columns to keep."""
+        """Reduced tangent from M and A, (m, m), the free rigid motions and the columns to keep."""
         return ReducedTangent(columns, M[:, columns], A[columns], motions)
 
     def solve(self, right: Reals) -> Reals:
-        """(f, δ) for a right-hand side, both (m + r,) or (m + r, c). Raises NotConverged where the system is singular
-        to double precision."""
+        """Solution (f, δ) for a right-hand side, both (m + r,) or (m + r, c). Raises NotConverged where the system is
+        singular to double precision."""
         H = self.motions.jumps
         b, load = np.split(right, [len(H)])
         if not len(self.columns) + len(load):  # nothing touches and nothing is free

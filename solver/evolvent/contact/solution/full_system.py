@@ -47,7 +47,7 @@ class FullContact:
         return self.K.shape[0] + len(self.condensed.load)
 
     def state(self, x: Floats) -> LawValues:
-        """The law's values at x."""
+        """Values of the contact law at x."""
         u, δ = x[: self.K.shape[0]], x[self.K.shape[0] :]
         jump = (self.trial @ u + self.prescribed + self.condensed.motion @ δ).reshape(len(self.op.nodes), -1)
         return self.law(self.op.trial(jump, self.slip))
@@ -59,7 +59,7 @@ class FullContact:
         return np.concatenate([bulk, self.condensed.motion.T @ f - self.condensed.load])
 
     def tangent(self, x: Floats) -> sp.csc_matrix:
-        """∂residual/∂x, sparse."""
+        """Sparse matrix ∂residual/∂x."""
         slope = self.op.tangent(self.state(x))
         H = sp.csr_matrix(self.condensed.motion)
         left, right = sp.hstack([self.test, H]), sp.hstack([self.trial, H])
@@ -106,7 +106,7 @@ def full_equilibrium(step_system: StepSystem, slip: Floats, start: Floats | None
 
 
 def _bonded(step_system: StepSystem) -> Floats:
-    """x of the linear problem in which all points are in contact, without friction."""
+    """Solution x of the linear problem in which all points are in contact, without friction."""
 
     def law(trial: Floats) -> LawValues:
         traction, derivative = np.zeros_like(trial), np.zeros((*trial.shape, trial.shape[1]))

@@ -102,7 +102,7 @@ class StepSystem:
         return SurfaceSupports.of(body.assembled.body, body.surfaces[side[1]], self.placements[side[0]].rotation)
 
     def _after_prescribed_motions(self, sides: tuple[Side, Side], placed: SurfacePair) -> SurfacePositions | None:
-        """Where the prescribed motions alone take the surfaces, if that is further than FAR."""
+        """Positions of the surfaces after the prescribed motions alone, if these are longer than FAR; else None."""
         first, second = (self._prescribed_displacement(side) for side in sides)
         lengths = [np.linalg.norm(u, axis=1).max() / surface.size for u, surface in zip((first, second), placed)]
         far = max(lengths) > FAR and not self.as_placed

@@ -44,7 +44,7 @@ class CoarseBody:
 
     @property
     def facets(self) -> Ints:
-        """(m, k) mesh nodes of the coarse contact surface's facets."""
+        """Mesh nodes (m, k) of the coarse contact surface's facets."""
         return self.mesh.facets[self.group]
 
     @cached_property

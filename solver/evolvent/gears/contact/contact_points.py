@@ -52,7 +52,7 @@ class ContactPoints:
 
     @property
     def pressure(self) -> Floats:
-        """λ (q,) [MPa]."""
+        """Contact pressure λ (q,) [MPa]."""
         return self.traction[:, 0]
 
 

@@ -29,7 +29,7 @@ FlankPoints = tuple[Surface, Ints, Floats]
 
 @dataclass(frozen=True)
 class UnsearchedOverlap:
-    """Where the undeformed flanks of a tooth pair overlap, or nearly do, outside the window.
+    """Points where the undeformed flanks of a tooth pair overlap, or nearly do, outside the window.
 
     tooth: tooth pair.
     pinion: the pinion's flank in place.
@@ -50,7 +50,7 @@ class UnsearchedOverlap:
 
     @property
     def normals(self) -> Floats:
-        """(q, d) unit normals along which the gaps were measured."""
+        """Unit normals (q, d) along which the gaps were measured."""
         n = self.pinion.evaluate(self.pinion.normals, self.pairs.facet1, self.pairs.xi1[:, None])[0][:, 0]
         return np.asarray(n / np.linalg.norm(n, axis=1, keepdims=True))
 

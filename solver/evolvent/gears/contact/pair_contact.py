@@ -39,7 +39,7 @@ class GearContact:
 
     @property
     def stand(self) -> Stand:
-        """Where the gears stood in the search."""
+        """Angular position of the gears in the search."""
         return self.geometry.stand
 
     def with_wear(self, bodies: tuple[GearBody, GearBody]) -> GearContact:

@@ -24,9 +24,9 @@ LEVELS_PER_WIDTH = {"quick": 1.7, "standard": 3.75, "fine": 6.0}
 peaks are within 2.1, 1.4 and 1.2 % of Hertz, the peak-to-peak transmission error lies 1.2, 0.2 and 0 % below that with
 4.5, a position takes 1, 1.4 and 1.8 times as long."""
 STIFF_PINION, STIFF_ELEMENTS = 5.0, 3.0
-"""Where the pinion, which carries the pressure, is so many times as stiff as the wheel, the contact is at least so many
-elements wide. Largest pressure of a spur pair 20/40 over that of a mesh twice as fine, at 1.7 elements: ratio 4.7 1.04,
-ratio 7 1.96, ratio 70 2.7; at 3: 1.01, 1.01, 1.03. With the softer gear as pinion: 1.03 at 1.5 elements."""
+"""Stiffness of the pinion, which carries the pressure, over that of the wheel, from which on the contact is at least so
+many elements wide. Largest pressure of a spur pair 20/40 over that of a mesh twice as fine, at 1.7 elements: ratio 4.7
+1.04, ratio 7 1.96, ratio 70 2.7; at 3: 1.01, 1.01, 1.03. With the softer gear as pinion: 1.03 at 1.5 elements."""
 SHEAR_PER_ELEMENT = {"quick": (0.85, 0.85), "standard": (0.85, 1.05), "fine": (1.2, 1.4)}
 """Elements by which a layer of (pinion, wheel) may shear the pressure ridge, on average along the profile; near the
 pinion tip it is 1.7 times that. The pinion, on whose nodes the jump is defined, decides: there 1.05 instead of 0.85 at
@@ -73,7 +73,7 @@ def has_stiff_pinion(problem: GearProblem) -> bool:
 
 
 def sector_resolutions(problem: GearProblem) -> tuple[SectorResolution, SectorResolution]:
-    """(pinion's, wheel's) resolution; see `sector_resolution`."""
+    """Resolutions of (pinion's, wheel's) sector; see `sector_resolution`."""
     return sector_resolution(problem, Member.PINION), sector_resolution(problem, Member.WHEEL)
 
 

@@ -1,4 +1,4 @@
-"""Which meshes a gear pair is condensed from: one fine mesh a sector, or a coarse one with levels on its flank."""
+"""Meshes from which a gear pair is condensed: one fine mesh a sector, or a coarse one with levels on its flank."""
 
 from __future__ import annotations
 

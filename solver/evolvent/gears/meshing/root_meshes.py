@@ -33,8 +33,8 @@ most of the rim, and the tension of Zhang's pair in space was 12 % too low; thre
 
 
 def finer_roots(sector: SectorResolution, times: int = FINER) -> SectorResolution:
-    """So many times the elements around both fillets and across the tooth's core, and cells so much thinner below the
-    fillets.
+    """Resolution with `times` as many elements around both fillets and across the tooth's core, and cells so much
+    thinner below the fillets.
 
     With the run's two columns of core the compression of He's pair's back was 0.9 % too low, with four 0.2 %. With
     cells as deep as those of a run the tension of Zhang's tight fillets was 1.6 % too low, however many there were;

@@ -20,7 +20,7 @@ class SectorSize:
     """Degrees of freedom of a sector, or of its plane section."""
 
     dofs: int
-    """All degrees of freedom."""
+    """Number of all degrees of freedom."""
     flank: int
     """Degrees of freedom of the loaded flank."""
     cuts: int

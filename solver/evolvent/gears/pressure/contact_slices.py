@@ -168,8 +168,8 @@ def layer_edges(heights: Floats) -> Floats:
 
 
 def _places(result: PositionResult, number: Ints, edge: Bools) -> tuple[Floats, Floats]:
-    """`Slices.roll_distance` and `Slices.radius`, from means of the contact points weighted with their forces. number:
-    (q,) slice of each point; edge: (n,)."""
+    """Values of `Slices.roll_distance` and `Slices.radius`, from means of the contact points weighted with their
+    forces. number: (q,) slice of each point; edge: (n,)."""
     c, pair = result.contact, result.stand.pair
     force = c.pressure * np.abs(c.weights)
     whole = np.bincount(number, force, len(edge))
@@ -180,8 +180,8 @@ def _places(result: PositionResult, number: Ints, edge: Bools) -> tuple[Floats, 
 
 
 def _fits(c: ContactPoints, number: Ints, load: Floats, edge: Bools) -> Floats:
-    """(3, n), the largest pressure of each slice and, away from tip edges, its `fitted_peak`. number, edge: see
-    `_places`; load: (n,) [N/mm]."""
+    """Largest pressure of each slice and, away from tip edges, its `fitted_peak`, (3, n). number, edge: see `_places`;
+    load: (n,) [N/mm]."""
     order = np.argsort(number, kind="stable")
     points = np.split(order, np.searchsorted(number[order], np.arange(1, len(load))))
     largest = [c.pressure[i].max() for i, _ in zip(points, load)]

@@ -121,7 +121,7 @@ class FlankChart:
         return FlankChart(self.diameters[first:], self.heights, self.depth[first:])
 
     def coverage(self, gear: GearParameters) -> FaceCoverage:
-        """Where the heights lie on a gear's face."""
+        """Part of a gear's face that the heights cover."""
         return FaceCoverage.of(self.heights, gear.face_width)
 
     def arcs(self, gear: GearParameters) -> Floats:

@@ -34,7 +34,7 @@ class MeshSettings:
     """
 
     level: Level = "standard"
-    """`quick` for orientation, `standard` for results, `fine` for reference."""
+    """Mesh level: `quick` for orientation, `standard` for results, `fine` for reference."""
     elements_per_contact_width: float | None = None
     """Elements across the Hertz width 2b_H; None: 1.7, 3 or 6 by the level, at least 3 on a stiff pinion."""
     shape: CellShape = "hexahedron"

@@ -53,8 +53,8 @@ def blank_factor(gear: GearParameters) -> float:
 
 
 def single_stiffness(pair: GearPair, line_load: float, moduli: tuple[float, float] = (STEEL, STEEL)) -> float:
-    """c' [N/(mm µm)] = C_M C_R C_B cos β / q' of a tooth pair, C_B the mean of both gears, C_R the smaller one: it is
-    meant for a mate that is as stiff or stiffer.
+    """Single stiffness c' = C_M C_R C_B cos β / q' of a tooth pair [N/(mm µm)], C_B the mean of both gears, C_R the
+    smaller one: it is meant for a mate that is as stiff or stiffer.
 
     line_load: K_A F_t/b [N/mm]; below 100 c' is less by (line_load/100)^0.25.
     moduli: of both gears [MPa]. Other metals than steel have c' in proportion to 2 E_1 E_2/(E_1 + E_2).

@@ -29,7 +29,7 @@ class JoinedSectors(Protocol):
 
 
 class ClosedRing:
-    """`total` sectors closed to a full circle, `count` of them named."""
+    """Ring of `total` sectors closed to a full circle, `count` of them named."""
 
     def __init__(self, stiffness: Floats, total: int, count: int) -> None:
         self._stiffness = stiffness
@@ -67,7 +67,7 @@ class ClosedRing:
 
 
 class OpenChain:
-    """`count` sectors in a row, the two outermost faces free, or fixed when `clamped`: A = L Lᵀ, block by block."""
+    """Chain of `count` sectors, the two outermost faces free, or fixed when `clamped`: A = L Lᵀ, block by block."""
 
     def __init__(self, stiffness: Floats, count: int, clamped: bool) -> None:
         self._size = len(stiffness) // 2

@@ -40,7 +40,8 @@ def balance_error(result: PositionResult) -> float:
 
 
 def pitch_imbalance(results: Sequence[PositionResult]) -> float:
-    """|input − output − friction work| / input over equal steps of a whole pitch, at one friction coefficient.
+    """Energy imbalance |input − output − friction work| / input over equal steps of a whole pitch, at one friction
+    coefficient.
 
     After a pitch the teeth are deflected as before it, so no energy is stored. What remains is the error of normals
     taken before deflection: it falls with the load, not with the mesh (7e-4 where the contact's half-width is 3 % of

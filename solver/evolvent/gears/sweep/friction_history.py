@@ -105,7 +105,7 @@ def previous_friction(geometry: ContactGeometry, history: FrictionHistory) -> Fl
 
 
 def _on_loaded_teeth(rows: Ints, forces: Floats) -> Bools:
-    """(m,) bool: the rows of teeth that carry load."""
+    """Rows (m,) bool of teeth that carry load."""
     size = np.abs(forces).max(axis=1)
     return np.isin(rows[:, 0], rows[size > NO_LOAD * size.max(initial=0.0), 0])
 
@@ -116,9 +116,9 @@ def _have_equal_rows(histories: Sequence[FrictionHistory]) -> bool:
 
 
 def _jump(geometry: ContactGeometry, before: Stand, u1: Floats, u2: Floats) -> Floats:
-    """(n, d) local: w = R_1 u_1 − R_2 Πu_2 of the previous position, turned with the wheel to the present one. On
-    deflected flanks the velocity of their points has the rotation of displacements with their gears: there each is
-    turned with its own."""
+    """Elastic jump (n, d) in local frames, w = R_1 u_1 − R_2 Πu_2 of the previous position, turned with the wheel to
+    the present one. On deflected flanks the velocity of their points has the rotation of displacements with their
+    gears: there each is turned with its own."""
     d, pinion, wheel = geometry.d, Member.PINION, Member.WHEEL
     R1, R2 = (geometry.stand.rotation(gear, d) for gear in Member)
     if not geometry.is_deflected:
@@ -142,7 +142,8 @@ def _displacements(geometry: ContactGeometry, histories: Sequence[FrictionHistor
 
 
 def _shared_rows(history: FrictionHistory, rows: Ints) -> tuple[Ints, Ints]:
-    """Which of the history's rows of the pinion are among the `rows` (m, 2) of now, and which of these they are."""
+    """Indices of the history's rows of the pinion that are among the present `rows` (m, 2), and indices of these in
+    `rows`."""
     both = _row_keys(history.rows[Member.PINION]), _row_keys(rows)
     _, then, now = np.intersect1d(*both, assume_unique=True, return_indices=True)
     return then, now

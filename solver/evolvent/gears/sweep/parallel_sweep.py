@@ -37,8 +37,8 @@ def sweep_on_ranks(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, comm: MPI.Comm, begin: int = 0,
     known: Mapping[int, KnownSolution] = NONE_KNOWN,
 ) -> Generator[SweptPosition, None, None]:
-    """`sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all ranks, which must close it
-    together where they leave it early."""
+    """Sweep of a pitch as by `sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all
+    ranks, which must close it together where they leave it early."""
     if comm.size == 1:
         yield from sweep_pitch(model, pitch, frictions, state, begin, known=known)
         return

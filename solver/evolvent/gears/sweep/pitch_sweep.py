@@ -121,7 +121,7 @@ class Pitch:
 
 
 def uniform_pitch(z1: int, positions: int, pitches: int = 1) -> Pitch:
-    """`positions` equal steps over each angular pitch 2π/z_1."""
+    """Pitch of `positions` equal steps over each angular pitch 2π/z_1."""
     step = 2.0 * np.pi / z1 / positions
     return Pitch(tuple(float(step * k) for k in range(pitches * positions)), pitches)
 

@@ -48,7 +48,7 @@ searched where it leaves the gears. Newton's method comes there two or three ite
 
 @dataclass(frozen=True)
 class SearchedAt:
-    """Where a position was searched.
+    """Angle, rotations and window with which a position was searched.
 
     angle: of the pinion [rad].
     extra: rotations of pinion and wheel beyond the nominal ones [rad].

@@ -63,7 +63,7 @@ class RoughFlanks:
         return np.asarray(solve_triangular(cholesky(P.T @ moved, lower=True), moved.T, lower=True).T)
 
     def _block(self, tooth: ToothWindow, C: Floats, bending: Floats) -> sp.csr_matrix:
-        """(n, n) normal compliance of a tooth's part of the contact without its bending, between nodes that are near
+        """Normal compliance (n, n) of a tooth's part of the contact without its bending, between nodes that are near
         along the face [mm/N]. Nodes further apart hardly change how well it preconditions."""
         lattice = self.levels[-1].correction.lattice
         x = tooth.map.opposite(lattice.at(tooth.nodes[-1]))

@@ -61,7 +61,7 @@ def _larger(values: Floats, fraction: float) -> slice:
 
 
 def symmetric_strips(strips: Sequence[Strip], per_layer: int) -> list[Strip]:
-    """½ (D + Dᵀ), rounded to single precision, from D.
+    """Strips of ½ (D + Dᵀ), rounded to single precision, from D.
 
     strips: of D; their sources hold each node once. per_layer: levels of nodes from one patch of a strip to the next.
     """

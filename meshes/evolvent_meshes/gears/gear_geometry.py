@@ -118,8 +118,7 @@ class GearGeometry:
 
     @property
     def virtual_teeth(self) -> float:
-        """Virtual number of teeth z_n = z / (cos² β_b cos β), that of the spur gear in the normal section, as ISO 6336
-        takes it."""
+        """Virtual number of teeth z_n = z / (cos² β_b cos β) of the spur gear in the normal section (ISO 6336)."""
         return self.z / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
 
     @property
@@ -166,7 +165,7 @@ class GearGeometry:
 
     @property
     def rim_thickness(self) -> float:
-        """Rim thickness s_R of the rim that a web carries; else from the bore to the root circle."""
+        """Rim thickness s_R: of the rim that a web carries, else from the bore to the root circle."""
         web = self.thin_web
         return (self.root_diameter - self.bore_diameter) / 2.0 if web is None else web.rim_thickness
 
@@ -180,8 +179,7 @@ class GearGeometry:
 
     @property
     def tip_coefficient(self) -> float:
-        """Coefficient h_aP* + k = (d_a − d) / 2m_n − x of addendum and tip alteration together; k is known in a pair
-        [4.5.3]."""
+        """Addendum plus tip alteration coefficient h_aP* + k = (d_a − d) / 2m_n − x; k is known in a pair [4.5.3]."""
         return (self.tip_diameter - self.reference_diameter) / (2.0 * self.normal_module) - self.profile_shift
 
     @property

@@ -126,7 +126,7 @@ class PairGeometry:
 
     @property
     def active_start_diameters(self) -> tuple[float, float]:
-        """Diameters (d_Nf1, d_Nf2) at which the active profile begins, as the mate's tip reaches no deeper [5.4.1]."""
+        """Start of active profile diameters (d_Nf1, d_Nf2): the mate's tip reaches no deeper [5.4.1]."""
         start, end = self.path_of_contact
         pitch_1, pitch_2 = self.pitch_point_roll_lengths
         pinion, wheel = self.pinion.base_radius, self.wheel.base_radius
@@ -188,8 +188,8 @@ class PairGeometry:
         return np.asarray(rho_1 * rho_2 / (rho_1 + rho_2))
 
     def roll_distance(self, rotation: ArrayLike, tooth: ArrayLike = 0, z: ArrayLike = 0.0) -> Floats:
-        """Roll distance ξ = r_b1(φ + 2πi/z_1) + hand_1 z tan β_b (…) [mm] of tooth pair i at z [mm] and pinion rotation φ
-        [rad]."""
+        """Roll distance ξ = r_b1(φ + 2πi/z_1) + hand_1 z tan β_b (…) [mm] of tooth pair i at z [mm] and pinion rotation
+        φ [rad]."""
         angle = np.asarray(rotation, dtype=float) + 2.0 * math.pi * np.asarray(tooth) / self.pinion.z
         return np.asarray(self.pinion.base_radius * (angle + self.pinion.twist * np.asarray(z, dtype=float)))
 

@@ -4,7 +4,7 @@ The half profile at θ > 0 runs from the sector's cut at θ = π/z over root arc
 or rounded tip (`gears.form.tip_edge`) and tip arc to the tooth's centre line θ = 0 (`SEGMENTS`, in this order);
 `mirror` gives the other half. The involute has no modifications; `evolvent_meshes.gears.flank` has them.
 
-The fillet is what the tip of the generating rack cuts, `evolvent_meshes.gears.form.rack_tip`.
+The fillet is cut by the tip of the generating rack, `evolvent_meshes.gears.form.rack_tip`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""A compliance that is known by products with forces, and roughly as a matrix, to precondition with.
+"""Compliance applied to forces without a matrix, with an approximate matrix for preconditioning.
 
     A ≈ blockdiag(A_1, A_2, ...) + U K Uᵀ
 
-The blocks are contacts that hardly feel each other, such as the tooth pairs of a gear: normal components only, good to
+The blocks are weakly coupled contacts, such as the tooth pairs of a gear: normal components only, good to
 a few per cent. U are the few smooth modes that they share.
 """
 
@@ -155,7 +155,8 @@ def with_modes(A: JumpCompliance, modes: Floats, amounts: Floats) -> JumpComplia
 def summed(
     parts: Sequence[NDArray[np.float64] | SurfaceCompliance], k: int, known: NearlyNormal | None = None
 ) -> JumpCompliance:
-    """The compliance of bodies that are all matrices (n·k, n·k), or all products; known: roughly, if it is known."""
+    """Compliance of bodies that are all matrices (n·k, n·k), or all applied without one. known: its approximate matrix,
+    None where that is not known."""
     matrices = [part for part in parts if isinstance(part, np.ndarray)]
     surfaces = [part for part in parts if not isinstance(part, np.ndarray)]
     if not surfaces:

@@ -30,7 +30,7 @@ TANGENTIAL = 1.2
 
 @dataclass(frozen=True)
 class NearlyNormal:
-    """A compliance of n nodes with k components, roughly: blocks of normal components, and modes of all components.
+    """Approximate compliance of n nodes with k components: blocks of normal components, and modes of all components.
 
     blocks: (n_i, n_i) of consecutive nodes, symmetric, sparse, in single precision [mm/N].
     modes: U (n·k, r).
@@ -80,9 +80,9 @@ class NearlyNormal:
 
 
 class BlockInverse:
-    """T⁻¹, roughly.
+    """Approximate inverse T⁻¹ of a tangent.
 
-    rough: A.
+    rough: approximate compliance A.
     unknowns: (u,) that are active.
     M: (u, u) among them.
     motions: H (u, r) among them and D (r, r).

@@ -1,4 +1,4 @@
-"""How a body answers contact forces in one step, with s free rigid motions of r, and k functionals."""
+"""Response of a body to contact forces in one step, with s free rigid motions of r, and k functionals."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from evolvent_meshes.arrays import Floats
 
 
 class BodyResponse(Protocol):
-    """The part of a body in the contact system of a step: y = P R δ + displacement + C f, and what resists δ."""
+    """The part of a body in the contact system of a step: y = P R δ + displacement + C f, and the forces that resist
+    δ."""
 
     @property
     def compliance(self) -> Floats:

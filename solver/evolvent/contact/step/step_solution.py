@@ -24,7 +24,7 @@ class Solution:
     nodal_forces: per body, forces (m,) on the functionals of its contact surfaces [N].
     condensed: the condensed bodies; `condensed[i].assembled.body` is the body itself.
     step: the step that was solved.
-    responses: how each body answers contact forces in this step.
+    responses: response of each body to contact forces in this step.
     searches: number of searches for pairs: 1, or more if they were repeated on displaced surfaces.
     """
 

@@ -58,7 +58,7 @@ class StepSystem:
     search_at: where the surfaces are searched for pairs; by default as the bodies are placed, moved by the prescribed
         motions if these are long.
     as_placed: search as the bodies are placed even if the prescribed motions are long.
-    responses: how the bodies answer contact forces; by default as without inertia.
+    responses: responses of the bodies to contact forces; by default as without inertia.
 
     No solution is stored: one system can be solved any number of times. Raises InputError for a step that does not fit
     the problem, SearchError.

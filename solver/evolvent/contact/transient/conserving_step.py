@@ -1,10 +1,10 @@
 """One time step that keeps the energy of contact without friction (time_schemes/midpoint_step.py).
 
-V(z) is what rest and contact store at given modes and rigid motions z, ½ fᵀC_r f + ∫ λ²/2γ less the flux in it; its
-gradient is the contact force. A step takes two contact systems: that of the midpoint, whose forces move the bodies, and
-that of the end, where z is held, from which V follows. Both are solved again until the stretch is such that the energy
-is that of the start, the work, and what damping took (time_schemes/stretch.py). All have the same pairs; where surfaces
-are searched anew V changes with them, and the stretch makes up for that, too.
+V(z) is the energy that rest and contact store at modes and rigid motions z, ½ fᵀC_r f + ∫ λ²/2γ less the flux in it;
+its gradient is the contact force. A step takes two contact systems: that of the midpoint, whose forces move the bodies,
+and that of the end, where z is held, from which V follows. Both are solved again until the stretch is such that the
+energy is that of the start, the work, and the damping losses (time_schemes/stretch.py). All have the same pairs; where
+surfaces are searched anew V changes with them, and the stretch makes up for that, too.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A condensed body with inertia: its modes at the contact functionals, and what the other modes add at once.
+"""A condensed body with inertia: its modes at the contact functionals, and the static response of the other modes.
 
 With F̂ all forces in the mean axes (fem/mean_axes.py), modes W of frequencies ω and q their amplitudes,
 

@@ -22,7 +22,7 @@ class TransientSettings:
     """The method of a transient.
 
     time_step: [s]; with a tolerance the first and the longest one.
-    modes: natural modes of each body that have inertia; the others answer at once.
+    modes: natural modes of each body that have inertia; the others respond statically.
     damping_ratio: of each mode, over the critical one.
     spectral_radius: ρ_∞ of the method, from 0 (motions too fast for the step are gone in one) to 1 (they stay for ever,
         and blows may add energy).

@@ -1,8 +1,8 @@
 """Correction of the response of a contact surface near a load by fine cells: a patch of the body, condensed twice.
 
 The patch is clamped where it is cut out of the body. Its compliance with fine cells, less that with coarse cells,
-transferred to the fine nodes, falls off with the distance from the load like the error of the coarse cells. What the
-functionals of Nitsche's method change falls off within the fine cells about the load, a smaller patch.
+transferred to the fine nodes, falls off with the distance from the load like the error of the coarse cells. The
+correction of the functionals of Nitsche's method falls off within the fine cells about the load, a smaller patch.
 """
 
 from __future__ import annotations
@@ -81,8 +81,8 @@ def patch_response(
 def _with_flux(
     plain: Floats, fine: _Condensable, part: Patch, inner: _Condensable, loaded: Bools, safety: float
 ) -> Floats:
-    """The change with what Nitsche's functionals change. inner: the part of the fine patch in which that is
-    followed."""
+    """Correction of a patch with that of Nitsche's functionals. inner: the part of the fine patch in which the latter
+    is followed."""
     change = plain.copy()
     number = np.full(len(fine.mesh.points), -1)
     number[fine.surface.nodes] = np.arange(len(fine.surface.nodes))

@@ -17,7 +17,7 @@ T = TypeVar("T")
 def divided(costs: Sequence[float], busy: Sequence[float]) -> list[list[int]]:
     """The tasks of each rank, the dearest first: each goes to the rank that has least to do.
 
-    costs: of each task. busy: cost of what each rank does besides.
+    costs: of each task. busy: cost of the other work of each rank.
     """
     load = np.array(busy, dtype=float)
     own: list[list[int]] = [[] for _ in busy]

@@ -58,9 +58,9 @@ class UnsearchedOverlap:
 def unsearched_overlaps(geometry: ContactGeometry, teeth: tuple[int, ...]) -> tuple[UnsearchedOverlap, ...]:
     """Overlaps outside the window of all tooth pairs, for flanks without wear.
 
-    Only what overlaps undeformed is looked at, and what a rotation of up to NEARLY can bring to overlap: loaded teeth
-    give way, so that flanks apart from the contact move away from each other. And only slices whose contact line is
-    off the path of contact: on it conjugate flanks are closest in the window. Raises SearchError.
+    Only flanks that overlap undeformed are checked, or that a rotation of up to NEARLY can bring to overlap: loaded
+    teeth deflect, so that flanks apart from the contact move away from each other. And only slices whose contact line
+    is off the path of contact: on it conjugate flanks are closest in the window. Raises SearchError.
     """
     overlaps, module = [], geometry.bodies[Member.PINION].gear.normal_module
     for tooth in teeth:

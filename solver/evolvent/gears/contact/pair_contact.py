@@ -68,8 +68,8 @@ class GearContact:
     ) -> CondensedSystem:
         """Condensed system with one free rotation: of the `loaded` gear, under `torque` [N·mm; per mm of width in 2D].
 
-        normal_only: without friction only the normal components are condensed, a ninth of the work. threads: in which
-        each gear's compliance is put together.
+        normal_only: without friction only the normal components are condensed, a ninth of the work. threads: context in
+        which each gear's compliance is assembled.
         """
         compliance = self.geometry.compliance(1 if normal_only else self.geometry.d, threads)
         return self.system_with(compliance, loaded, torque)

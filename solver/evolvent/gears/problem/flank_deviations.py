@@ -4,9 +4,9 @@
     144.2,-10.0,0.3
 
 One line a point of a grid over diameter and height; z_mm, from mid-face, may be left out where the profile is the same
-over the face. depth: what is missing of the designed flank, modifications included, normal to it; negative where there
-is more. Between points the depth is linear in the involute's arc and in z, beyond the chart that of its rim: a chart
-may be a little shorter than the face (`face_coverage.py`).
+over the face. depth: material missing from the designed flank, modifications included, normal to it; negative where
+there is more. Between points the depth is linear in the involute's arc and in z, beyond the chart that of its rim: a
+chart may be a little shorter than the face (`face_coverage.py`).
 """
 
 from __future__ import annotations

@@ -1,15 +1,16 @@
 """Internal dynamic factor K_v of ISO 6336-1:2006, clause 6, Method B: the pair as a mass on a spring, by its resonance
-ratio N, with what measurements have shown beside.
+ratio N, with terms from measurements.
 
     N ≤ N_S            K_v = 1 + N (C_v1 B_p + C_v2 B_f + C_v3 B_k)        subcritical       (Eqs 13, 14)
     N_S < N ≤ 1.15     K_v = 1 + C_v1 B_p + C_v2 B_f + C_v4 B_k            main resonance    (Eq. 20)
     1.15 < N < 1.5     linear between both                                 intermediate      (Eq. 22)
     N ≥ 1.5            K_v = C_v5 B_p + C_v6 B_f + C_v7                    supercritical     (Eq. 21)
 
-B_p and B_f are effective base pitch and profile deviations times c' over the line load, B_k what tip relief leaves of
-the deflection. It is no motion: no damping and no stiffness over the pitch are asked for, superharmonic resonances are
-in no range of their own, and for the main resonance the standard itself sends to Method A, as the true factor may be
-40 % away. Method B is meant for (v z_1/100) √(u²/(1 + u²)) above 3 m/s; below, K_v is near 1.
+B_p and B_f are effective base pitch and profile deviations times c' over the line load, B_k the part of the
+deflection that tip relief leaves. No motion is computed: damping and the stiffness over the pitch do not enter,
+superharmonic resonances are in no range of their own, and for the main resonance the standard itself sends to
+Method A, as the true factor may be 40 % away.
+Method B is meant for (v z_1/100) √(u²/(1 + u²)) above 3 m/s; below, K_v is near 1.
 """
 
 from __future__ import annotations

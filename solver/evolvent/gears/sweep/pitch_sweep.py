@@ -137,7 +137,7 @@ def sweep_pitch(
 ) -> Iterator[SweptPosition]:
     """Solves pitch.angles[begin:] in turn. A position that fails is approached by up to four halvings of the step.
 
-    common: what the coefficients share of the first position, None where it is to be searched.
+    common: search and frictionless equilibrium of the first position, None where it is to be searched.
     known: number of a position -> how it was solved before.
 
     Raises NotConverged, with the angle and the friction coefficient.

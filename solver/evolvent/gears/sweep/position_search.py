@@ -2,7 +2,7 @@
 
 Flanks are searched at given rotations of both gears, and the equilibrium turns one of them on. So the search is made
 again until it was made where the equilibrium is, and in a window that holds all of the contact. All friction
-coefficients share what is found.
+coefficients share its results.
 """
 
 from __future__ import annotations

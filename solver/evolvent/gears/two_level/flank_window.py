@@ -70,9 +70,9 @@ class FlankWindow:
     """One gear's part of the compliance of a position (a `SurfaceCompliance`).
 
     teeth: its flanks, one a tooth pair.
-    levels: what each level changes between their nodes, from the coarsest to the finest.
+    levels: correction by each level between their nodes, from the coarsest to the finest.
     ring: the compliance of the coarse nodes.
-    roughly: makes a rough matrix of it.
+    roughly: makes an approximate matrix of it.
     """
 
     teeth: tuple[ToothWindow, ...]

@@ -1,7 +1,7 @@
 """Correction by fine cells of the normal displacements of a swept flank under normal forces, between some of its nodes.
 
 In the frames of the coarse layers the normals are alike from layer to layer, as the patches are. So each strip has one
-matrix of numbers, a ninth of its own size, and only what lies between the nodes of a position is put together.
+matrix of numbers, a ninth of its own size, and only the part between the nodes of a position is assembled.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Approximate compliance matrix of fine flanks, for the preconditioner of Newton steps.
 
-Of each tooth by itself the normal components only, which are few numbers; how it bends under smooth loads, and what
-couples teeth, are modes of all components. Good to a few per cent.
+Each tooth by itself has normal components only, which are few numbers; its bending under smooth loads and the
+coupling of teeth are modes of all components. Good to a few per cent.
 """
 
 from __future__ import annotations

@@ -112,8 +112,8 @@ class LoadedPatch:
     """The patch of a block of coarse cells.
 
     block: the cells with forces.
-    patch: what lies within reach of them.
-    cost: roughly, beside those of other patches of any flank.
+    patch: cells within reach of them.
+    cost: estimated, relative to that of other patches of any flank.
     """
 
     block: Block

@@ -13,4 +13,4 @@ Bools = NDArray[np.bool_]
 Complexes = NDArray[np.complex128]
 Singles = NDArray[np.float32]
 Reals = NDArray[Any]
-"""Of single or double precision."""
+"""Array of single or double precision."""

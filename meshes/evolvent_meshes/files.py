@@ -15,7 +15,7 @@ from typing import BinaryIO
 from evolvent_meshes.errors import EvolventError, InputError
 
 PART = ".evolvent-part"
-"""In the name of a file that is being written; files of this name left over from a killed run may be removed."""
+"""Part of the name of a file that is being written; files of this name left over from a killed run may be removed."""
 
 SPECIAL_FILES = {
     stat.S_IFIFO: "a named pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket",

@@ -25,7 +25,7 @@ Door = tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]
 
 
 def lazy_names(package: str) -> Door:
-    """`__all__`, `__getattr__` and `__dir__` of a package for the names below its `if TYPE_CHECKING:`.
+    """Values of `__all__`, `__getattr__` and `__dir__` of a package for the names below its `if TYPE_CHECKING:`.
 
     A name may be one of a module, or a module. An unknown one raises AttributeError with the nearest public one.
     """

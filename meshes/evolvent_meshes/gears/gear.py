@@ -13,11 +13,12 @@ from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_te
 from evolvent_meshes.gears.modifications.modifications import Modifications
 
 RACK_TIP_RADIUS = 0.38
-"""ρ_fP* of the basic rack of ISO 53, profile A."""
+"""Tip radius ρ_fP* of the basic rack of ISO 53, profile A."""
 
 
 def usual_rack_tip_radius(normal_module: float, normal_pressure_angle: float, dedendum_coefficient: float) -> float:
-    """ρ_fP [mm] of ISO 53, profile A, or of a fully rounded rack tooth if that is less, for h_fP* and α_n [rad]."""
+    """Rack tip radius ρ_fP [mm] of ISO 53, profile A, or of a fully rounded rack tooth if that is less, for h_fP* and
+    α_n [rad]."""
     half_tip = math.pi / 4.0 - dedendum_coefficient * math.tan(normal_pressure_angle)
     full_round = half_tip * math.cos(normal_pressure_angle) / (1.0 - math.sin(normal_pressure_angle))
     return normal_module * max(0.0, min(RACK_TIP_RADIUS, (1.0 - 1e-9) * full_round))

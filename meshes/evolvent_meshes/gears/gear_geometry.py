@@ -27,7 +27,7 @@ def involute_function(angle: float) -> float:
 
 
 def thickness_shift(allowance_um: float, normal_module: float, normal_pressure_angle: float) -> float:
-    """x_E − x = A_sn / (2 m_n tan α_n) of a tooth thickness allowance [µm]; m_n [mm], α_n [rad]."""
+    """Profile shift x_E − x = A_sn / (2 m_n tan α_n) of a tooth thickness allowance [µm]; m_n [mm], α_n [rad]."""
     return 1e-3 * allowance_um / (2.0 * normal_module * math.tan(normal_pressure_angle))
 
 
@@ -78,52 +78,52 @@ class GearGeometry:
 
     @property
     def helix_angle(self) -> float:
-        """β at the reference cylinder, not negative."""
+        """Helix angle β at the reference cylinder, not negative."""
         return math.radians(self.helix_angle_deg)
 
     @property
     def normal_pressure_angle(self) -> float:
-        """α_n [4.3.6]."""
+        """Normal pressure angle α_n [4.3.6]."""
         return math.radians(self.normal_pressure_angle_deg)
 
     @property
     def transverse_module(self) -> float:
-        """m_t = m_n / cos β [4.2.7]."""
+        """Transverse module m_t = m_n / cos β [4.2.7]."""
         return self.normal_module / math.cos(self.helix_angle)
 
     @cached_property
     def transverse_pressure_angle(self) -> float:
-        """α_t, tan α_t = tan α_n / cos β [4.3.6]."""
+        """Transverse pressure angle α_t, tan α_t = tan α_n / cos β [4.3.6]."""
         return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.helix_angle))
 
     @property
     def reference_diameter(self) -> float:
-        """d = z m_t [4.2.4]."""
+        """Reference diameter d = z m_t [4.2.4]."""
         return self.z * self.transverse_module
 
     @property
     def base_diameter(self) -> float:
-        """d_b = d cos α_t [4.3.10]."""
+        """Base diameter d_b = d cos α_t [4.3.10]."""
         return self.reference_diameter * math.cos(self.transverse_pressure_angle)
 
     @cached_property
     def base_radius(self) -> float:
-        """r_b = d_b / 2."""
+        """Base radius r_b = d_b / 2."""
         return self.base_diameter / 2.0
 
     @cached_property
     def base_helix_angle(self) -> float:
-        """β_b ≥ 0, sin β_b = sin β cos α_n [4.3.3]."""
+        """Base helix angle β_b ≥ 0, sin β_b = sin β cos α_n [4.3.3]."""
         return math.asin(math.sin(self.helix_angle) * math.cos(self.normal_pressure_angle))
 
     @property
     def virtual_teeth(self) -> float:
-        """z_n = z / (cos² β_b cos β), teeth of the spur gear in the normal section, as ISO 6336 takes it."""
+        """Virtual number of teeth z_n = z / (cos² β_b cos β) of the spur gear in the normal section (ISO 6336)."""
         return self.z / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
 
     @property
     def transverse_base_pitch(self) -> float:
-        """p_bt = π m_t cos α_t [4.4.5]."""
+        """Transverse base pitch p_bt = π m_t cos α_t [4.4.5]."""
         return math.pi * self.base_diameter / self.z
 
     @cached_property
@@ -133,7 +133,7 @@ class GearGeometry:
 
     @cached_property
     def tip_form_diameter(self) -> float:
-        """d_Fa, tip form diameter, at which the involute ends: d_a, or where a chamfer or a rounding begins [4.5].
+        """Tip form diameter d_Fa, at which the involute ends: d_a, or where a chamfer or a rounding begins [4.5].
 
         A rounding of radius R touches the tip circle from within and the involute at its roll length ρ_Fa: its centre
         lies on the normal there, (ρ_Fa − R)² + r_b² = (r_a − R)². The base diameter where there is none.
@@ -165,7 +165,7 @@ class GearGeometry:
 
     @property
     def rim_thickness(self) -> float:
-        """s_R, of the rim that a web carries; else from the bore to the root circle."""
+        """Rim thickness s_R: of the rim that a web carries, else from the bore to the root circle."""
         web = self.thin_web
         return (self.root_diameter - self.bore_diameter) / 2.0 if web is None else web.rim_thickness
 
@@ -179,49 +179,49 @@ class GearGeometry:
 
     @property
     def tip_coefficient(self) -> float:
-        """h_aP* + k = (d_a − d) / 2m_n − x, addendum and tip alteration together; k is known in a pair [4.5.3]."""
+        """Addendum plus tip alteration coefficient h_aP* + k = (d_a − d) / 2m_n − x; k is known in a pair [4.5.3]."""
         return (self.tip_diameter - self.reference_diameter) / (2.0 * self.normal_module) - self.profile_shift
 
     @property
     def dedendum_coefficient(self) -> float:
-        """h_fP* = (d − d_f) / 2m_n + x_E [4.5]."""
+        """Dedendum coefficient of the basic rack h_fP* = (d − d_f) / 2m_n + x_E [4.5]."""
         return (self.reference_diameter - self.root_diameter) / (2.0 * self.normal_module) + self.generating_shift
 
     @property
     def generating_shift(self) -> float:
-        """x_E = x + A_sn / (2 m_n tan α_n), generating profile shift coefficient: that of the rack which cuts the tooth
+        """Generating profile shift coefficient x_E = x + A_sn / (2 m_n tan α_n): that of the rack which cuts the tooth
         with its thickness allowance [7.5]."""
         module, angle = self.normal_module, self.normal_pressure_angle
         return self.profile_shift + thickness_shift(self.tooth_thickness_allowance_um, module, angle)
 
     @property
     def tooth_half_angle(self) -> float:
-        """ψ = (π + 4 x_E tan α_n) / 2z, tooth thickness half angle at the reference circle [4.7.2]."""
+        """Tooth thickness half angle ψ = (π + 4 x_E tan α_n) / 2z at the reference circle [4.7.2]."""
         return (math.pi + 4.0 * self.generating_shift * math.tan(self.normal_pressure_angle)) / (2.0 * self.z)
 
     @cached_property
     def base_half_angle(self) -> float:
-        """ψ_b = ψ + inv α_t, tooth thickness half angle at the base circle [4.7.2]."""
+        """Tooth thickness half angle ψ_b = ψ + inv α_t at the base circle [4.7.2]."""
         return self.tooth_half_angle + involute_function(self.transverse_pressure_angle)
 
     def half_angle(self, diameter: float) -> float:
-        """ψ_y, tooth thickness half angle at a diameter d_y ≥ d_b: polar angle of the flank θ > 0 at mid-face [4.7.2].
+        """Tooth thickness half angle ψ_y at a diameter d_y ≥ d_b: polar angle of the flank θ > 0 at mid-face [4.7.2].
 
         Negative beyond the diameter at which the tooth is pointed.
         """
         return self.base_half_angle - involute_function(math.acos(min(1.0, self.base_diameter / diameter)))
 
     def transverse_thickness(self, diameter: float) -> float:
-        """s_yt = d_y ψ_y, transverse tooth thickness at a diameter d_y [4.7.1]."""
+        """Transverse tooth thickness s_yt = d_y ψ_y at a diameter d_y [4.7.1]."""
         return diameter * self.half_angle(diameter)
 
     def normal_thickness(self, diameter: float) -> float:
-        """s_yn = s_yt cos β_y, normal tooth thickness at a diameter d_y; tan β_y = tan β d_y/d [4.7.5, 4.3.3]."""
+        """Normal tooth thickness s_yn = s_yt cos β_y at a diameter d_y; tan β_y = tan β d_y/d [4.7.5, 4.3.3]."""
         helix = math.atan(math.tan(self.helix_angle) * diameter / self.reference_diameter)
         return self.transverse_thickness(diameter) * math.cos(helix)
 
     def roll_length(self, diameter: float) -> float:
-        """ρ_y = √(d_y² − d_b²) / 2, roll length: transverse radius of curvature at a diameter d_y [4.3.8]."""
+        """Roll length ρ_y = √(d_y² − d_b²) / 2: transverse radius of curvature at a diameter d_y [4.3.8]."""
         return math.sqrt(max(0.0, diameter**2 - self.base_diameter**2)) / 2.0
 
     @cached_property
@@ -269,13 +269,13 @@ class GearGeometry:
         return tip.crossing(highest, self.base_radius, self._involute_angles)
 
     def _involute_angles(self, radius: Floats) -> Floats:
-        """θ (n,) at radii (n,) of the flank θ > 0 at mid-face."""
+        """Polar angles θ (n,) at radii (n,) of the flank θ > 0 at mid-face."""
         tangent = np.sqrt(np.maximum(radius**2 - self.base_radius**2, 0.0)) / self.base_radius
         return np.asarray(self.base_half_angle - (tangent - np.arctan(tangent)))
 
     @cached_property
     def rack_form_roll_length(self) -> float:
-        """ρ_Ff, roll length at the root form circle, where fillet and involute meet; NaN where they do not [7.6]."""
+        """Roll length ρ_Ff at the root form circle, where fillet and involute meet; NaN where they do not [7.6]."""
         if not (self.protuberance_um or self.is_undercut):
             return self.rack_flank_roll_length
         direction = self.form_direction
@@ -283,7 +283,7 @@ class GearGeometry:
 
     @property
     def root_form_diameter(self) -> float:
-        """d_Ff, root form diameter, at which fillet and involute meet [7.6]."""
+        """Root form diameter d_Ff, at which fillet and involute meet [7.6]."""
         return 2.0 * math.hypot(self.base_radius, self.rack_form_roll_length)
 
     @property

@@ -24,7 +24,7 @@ SMALLEST_BORE = 0.01
 FEWEST_TEETH = 5
 """Smallest number of teeth."""
 MOST_UNDERCUT = 0.3
-"""By how many normal modules a rack may be too deep not to undercut."""
+"""Normal modules by which a rack may be too deep not to undercut."""
 
 
 def check_gear(gear: GearGeometry) -> None:

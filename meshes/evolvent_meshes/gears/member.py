@@ -1,4 +1,4 @@
-"""Which gear of a pair: the pinion or the wheel."""
+"""The two gears of a pair: pinion and wheel."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ class Member(IntEnum):
 
     @property
     def label(self) -> MemberName:
-        """Its name in scene files and reports."""
+        """Name of the gear in scene files and reports."""
         return "pinion" if self is Member.PINION else "wheel"
 
     @property
     def sign(self) -> int:
-        """+1 for the pinion, −1 for the wheel: the sign of quantities that are opposite on the two gears.
+        """Sign of quantities that are opposite on the two gears: +1 for the pinion, −1 for the wheel.
 
         Tooth pair i consists of the teeth sign·i, the roll length increases by sign·ξ, the gap by sign·u.
         """
@@ -29,7 +29,7 @@ class Member(IntEnum):
 
     @property
     def mate(self) -> Member:
-        """The other gear."""
+        """Mating gear."""
         return Member.WHEEL if self is Member.PINION else Member.PINION
 
     @classmethod

@@ -17,14 +17,15 @@ PLACES = ("tip_relief_start_diameter", "root_relief_end_diameter", "profile_cont
 
 
 def check_modification_types(given: Any) -> None:
-    """Modifications, which have numbers and no texts. Raises GeometryError."""
+    """Checks that modifications have numbers and no texts. Raises GeometryError."""
     require_instance(given, Modifications, "modifications", "Write Modifications(tip_relief_um=...).")
     require_numbers(**{name: getattr(given, name) for name in AMOUNTS})
     require_numbers(**{name: value for name in PLACES if (value := getattr(given, name)) is not None})
 
 
 def check_modifications(gear: GearGeometry) -> None:
-    """Amounts in their range, places on the flank, something left of the tooth at its tip. Raises GeometryError."""
+    """Checks that amounts are in their range, places on the flank, and material remains at the tip. Raises
+    GeometryError."""
     for name in AMOUNTS:
         least, value = (-LARGEST if name in SIGNED else 0.0), getattr(gear.modifications, name)
         remedy = "It is the material taken off, in µm."
@@ -35,7 +36,7 @@ def check_modifications(gear: GearGeometry) -> None:
 
 
 def _check_profile(gear: GearGeometry) -> None:
-    """Where modifications of the profile begin and end."""
+    """Checks where modifications of the profile begin and end."""
     given, low, high = gear.modifications, gear.root_form_diameter, gear.tip_form_diameter
     if given.tip_relief_um:
         _check_between(
@@ -59,7 +60,7 @@ def _check_between(key: str, found: float | None, low: float, high: float, remed
 
 
 def _check_ends(gear: GearGeometry) -> None:
-    """The length of the end relief."""
+    """Checks the length of the end relief."""
     length, half = gear.modifications.end_relief_length, 0.5 * gear.face_width
     if gear.modifications.end_relief_um:
         remedy = "It is the length at either end of the face."
@@ -68,7 +69,7 @@ def _check_ends(gear: GearGeometry) -> None:
 
 
 def _check_tip(gear: GearGeometry) -> None:
-    """What is left of the tooth at the ends of its tip."""
+    """Checks that material remains at the ends of the tooth's tip."""
     half = 0.5 * gear.face_width
     taken = 1e3 * float(gear.flank_depth.at(np.full(2, gear.flank_depth.tip), np.array([-half, half])).max())
     thickness = 1e3 * gear.normal_thickness(gear.tip_diameter)

@@ -49,7 +49,7 @@ class PairGeometry:
 
     @property
     def gears(self) -> tuple[GearParameters, GearParameters]:
-        """(pinion, wheel)."""
+        """Both gears (pinion, wheel)."""
         return self.pinion, self.wheel
 
     @property
@@ -59,7 +59,7 @@ class PairGeometry:
 
     @property
     def face_width(self) -> float:
-        """b_w, common face width; the wider gear projects equally on both sides."""
+        """Common face width b_w; the wider gear projects equally on both sides."""
         return min(self.pinion.face_width, self.wheel.face_width)
 
     @cached_property
@@ -69,7 +69,7 @@ class PairGeometry:
 
     @property
     def tight_pressure_angle(self) -> float:
-        """α_wt without backlash, inv α_wt = inv α_t + 2 tan α_n (x_1 + x_2)/(z_1 + z_2) [5.2.4].
+        """Working pressure angle α_wt without backlash, inv α_wt = inv α_t + 2 tan α_n (x_1 + x_2)/(z_1 + z_2) [5.2.4].
 
         Raises GeometryError if the profile shifts are so negative that there is none.
         """
@@ -126,7 +126,7 @@ class PairGeometry:
 
     @property
     def active_start_diameters(self) -> tuple[float, float]:
-        """(d_Nf1, d_Nf2), diameters at which the active profile begins, as the mate's tip reaches no deeper [5.4.1]."""
+        """Start of active profile diameters (d_Nf1, d_Nf2): the mate's tip reaches no deeper [5.4.1]."""
         start, end = self.path_of_contact
         pitch_1, pitch_2 = self.pitch_point_roll_lengths
         pinion, wheel = self.pinion.base_radius, self.wheel.base_radius
@@ -141,7 +141,7 @@ class PairGeometry:
 
     @property
     def addendum_coefficients(self) -> tuple[float, float]:
-        """(h_aP1*, h_aP2*) of the basic racks, from d_a = d + 2 m_n (h_aP* + x + k)."""
+        """Addendum coefficients (h_aP1*, h_aP2*) of the basic racks, from d_a = d + 2 m_n (h_aP* + x + k)."""
         k = self.tip_alteration_coefficient
         return self.pinion.tip_coefficient - k, self.wheel.tip_coefficient - k
 
@@ -188,7 +188,8 @@ class PairGeometry:
         return np.asarray(rho_1 * rho_2 / (rho_1 + rho_2))
 
     def roll_distance(self, rotation: ArrayLike, tooth: ArrayLike = 0, z: ArrayLike = 0.0) -> Floats:
-        """ξ = r_b1(φ + 2πi/z_1) + hand_1 z tan β_b (…) [mm] of tooth pair i at z [mm] and pinion rotation φ [rad]."""
+        """Roll distance ξ = r_b1(φ + 2πi/z_1) + hand_1 z tan β_b (…) [mm] of tooth pair i at z [mm] and pinion rotation
+        φ [rad]."""
         angle = np.asarray(rotation, dtype=float) + 2.0 * math.pi * np.asarray(tooth) / self.pinion.z
         return np.asarray(self.pinion.base_radius * (angle + self.pinion.twist * np.asarray(z, dtype=float)))
 

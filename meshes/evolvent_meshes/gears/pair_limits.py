@@ -29,7 +29,7 @@ def check_types(pair: PairGeometry) -> None:
 
 
 def check_partners(pair: PairGeometry) -> None:
-    """Both gears have the same rack, and helical ones opposite hands. Raises GeometryError."""
+    """Checks that both gears have the same rack, and helical ones opposite hands. Raises GeometryError."""
     pinion, wheel = pair.gears
     for key in ("normal_module", "normal_pressure_angle_deg", "helix_angle_deg"):
         one, two = getattr(pinion, key), getattr(wheel, key)

@@ -4,7 +4,7 @@ The half profile at θ > 0 runs from the sector's cut at θ = π/z over root arc
 or rounded tip (`gears.form.tip_edge`) and tip arc to the tooth's centre line θ = 0 (`SEGMENTS`, in this order);
 `mirror` gives the other half. The involute has no modifications; `evolvent_meshes.gears.flank` has them.
 
-The fillet is what the tip of the generating rack cuts, `evolvent_meshes.gears.form.rack_tip`.
+The fillet is cut by the tip of the generating rack, `evolvent_meshes.gears.form.rack_tip`.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Profile:
 
     @property
     def sector_angle(self) -> float:
-        """θ of the cut, π/z [rad]."""
+        """Angle θ of the cut, π/z [rad]."""
         return math.pi / self.gear.z
 
     @property
@@ -62,7 +62,7 @@ class Profile:
 
     @property
     def tip_angle(self) -> float:
-        """θ at which the tip circle begins [rad]."""
+        """Angle θ at which the tip circle begins [rad]."""
         return self.gear.half_angle(self.gear.tip_diameter) if self.edge is None else self.edge.end[1]
 
     @property
@@ -77,11 +77,11 @@ class Profile:
 
     @property
     def root_angle(self) -> float:
-        """θ at which fillet and root arc meet [rad], at most π/z; π/z for a full round root without arc."""
+        """Angle θ at which fillet and root arc meet [rad], at most π/z; π/z for a full round root without arc."""
         return float(self.gear.rack_tip.generated(math.pi / 2.0)[1])
 
     def angle(self, radius: ArrayLike) -> Floats:
-        """θ(r) (…) [rad] of involute, and chamfer or rounding of the tip, at radii r ≥ r_b (…) [mm]."""
+        """Angles θ(r) (…) [rad] of involute, and chamfer or rounding of the tip, at radii r ≥ r_b (…) [mm]."""
         involute = self._involute_angle(self.roll_length(radius))
         if self.edge is None:
             return np.asarray(involute)

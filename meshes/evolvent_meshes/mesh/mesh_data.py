@@ -70,7 +70,7 @@ class MeshData:
         return CELL_DIMENSION[self.shape]
 
     def turned_over(self) -> MeshData:
-        """The same 2D mesh with the opposite sense of rotation of its cells, counter-clockwise instead of clockwise.
+        """A copy of a 2D mesh with the opposite sense of rotation of its cells, counter-clockwise instead of clockwise.
 
         Raises MeshError in 3D.
         """

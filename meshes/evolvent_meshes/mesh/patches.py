@@ -20,11 +20,11 @@ class Patch:
     """Some cells of a mesh as a mesh of their own."""
 
     mesh: MeshData
-    """With the groups of the body's mesh, as far as they lie on the patch, and the group CUT."""
+    """Mesh with the groups of the body's mesh, as far as they lie on the patch, and the group CUT."""
     cells: Ints
-    """(n_cells,) numbers in the body's mesh."""
+    """Numbers (n_cells,) of the cells in the body's mesh."""
     nodes: Ints
-    """(n,) numbers in the body's mesh."""
+    """Numbers (n,) of the nodes in the body's mesh."""
 
 
 def cells_near(mesh: MeshData, nodes: Ints, reach: float) -> Ints:
@@ -34,7 +34,7 @@ def cells_near(mesh: MeshData, nodes: Ints, reach: float) -> Ints:
 
 
 def cut_out(mesh: MeshData, cells: Ints) -> Patch:
-    """These cells (n,) of a mesh, as a patch. The patch of a patch keeps the group CUT where it lies on that."""
+    """Patch of some cells (n,) of a mesh. The patch of a patch keeps the group CUT where it lies on that."""
     nodes, numbers = np.unique(mesh.cells[cells], return_inverse=True)
     place = np.full(len(mesh.points), -1)
     place[nodes] = np.arange(len(nodes))

@@ -29,9 +29,9 @@ class SplitMesh:
     mesh: MeshData
     """The smaller cells, with the groups of the mesh before."""
     parent: Ints
-    """(cells,) cell before the split."""
+    """Cell before the split (cells,) of each cell."""
     values: sp.csr_matrix
-    """(nodes, nodes before) shape functions of the mesh before at the nodes."""
+    """Shape functions (nodes, nodes before) of the mesh before at the nodes."""
 
 
 def edge_classes(mesh: MeshData) -> Ints:
@@ -117,16 +117,16 @@ class _Lattice:
 
     @property
     def cells(self) -> Ints:
-        """(n·m, k) on the points of all cells."""
+        """Cells (n·m, k) on the points of all cells."""
         return self._of_all(self.local)
 
     @property
     def parent(self) -> Ints:
-        """(n·m,) cell before the split."""
+        """Cell before the split (n·m,) of each cell."""
         return np.repeat(self.parents, len(self.local))
 
     def values(self, mesh: MeshData) -> sp.csr_matrix:
-        """(n·q, nodes before) shape functions at all points."""
+        """Shape functions (n·q, nodes before) at all points."""
         columns = np.repeat(mesh.cells[self.parents], len(self.shapes), axis=0)
         data = np.tile(self.shapes, (len(self.parents), 1))
         ends = data.shape[1] * np.arange(len(data) + 1)

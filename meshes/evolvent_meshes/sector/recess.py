@@ -1,4 +1,4 @@
-"""What a sector of a gear with a web lacks: the cells between rim and hub, or rim and bore, beside the web."""
+"""Recess of a gear with a web: cells between rim and hub, or rim and bore, beside the web, which its sector lacks."""
 
 from __future__ import annotations
 

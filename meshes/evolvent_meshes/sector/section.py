@@ -114,7 +114,7 @@ class SectorResolution:
 
     @property
     def body_elements(self) -> tuple[int, int, int]:
-        """Those of rim, web and hub."""
+        """Numbers of elements of rim, web and hub."""
         return self.rim_elements, self.web_elements, self.hub_elements
 
 

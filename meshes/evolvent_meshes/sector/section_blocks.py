@@ -38,7 +38,7 @@ def half_steps(start: float, end: float) -> Floats:
 
 
 def even(numbers: Floats) -> Floats:
-    """As many fractions, evenly from 0 to 1."""
+    """Fractions from 0 to 1, evenly spaced, as many as `numbers`."""
     return np.linspace(0, 1, len(numbers))
 
 

@@ -46,17 +46,18 @@ def relative_radius(radius1: Value, radius2: Value) -> Value:
 
 
 def line_half_width(line_load: Value | float, radius: Value, modulus: float) -> Value:
-    """b = √(4 F' R / π E*) [mm] (Johnson 4.43). line_load F' [N/mm], radius R [mm], modulus E* [MPa]."""
+    """Half-width of a line contact b = √(4 F' R / π E*) [mm] (Johnson 4.43). line_load F' [N/mm], radius R [mm],
+    modulus E* [MPa]."""
     return np.sqrt(4 * line_load * radius / (pi * modulus))
 
 
 def line_peak_pressure(line_load: Value | float, radius: Value, modulus: float) -> Value:
-    """p0 = √(F' E* / π R) = 2 F' / π b [MPa] (Johnson 4.45)."""
+    """Peak pressure of a line contact p0 = √(F' E* / π R) = 2 F' / π b [MPa] (Johnson 4.45)."""
     return np.sqrt(line_load * modulus / (pi * radius))
 
 
 def line_pressure(x: Value, half_width: float, peak: float) -> Value:
-    """p(x) = p0 √(1 − x²/b²), zero outside |x| < b [MPa] (Johnson 4.44)."""
+    """Pressure of a line contact p(x) = p0 √(1 − x²/b²), zero outside |x| < b [MPa] (Johnson 4.44)."""
     return peak * np.sqrt(np.maximum(0.0, 1 - (x / half_width) ** 2))
 
 
@@ -130,7 +131,7 @@ def elliptical_contact(load: float, curvature_a: float, curvature_b: float, modu
 
 
 def _ellipse_shape(ratio: float) -> float:
-    """m = 1 − b²/a² for B/A = ratio ≥ 1."""
+    """Shape m = 1 − b²/a² for B/A = ratio ≥ 1."""
     if ratio == 1:
         return 0.0
 
@@ -184,7 +185,8 @@ def sphere_axis_stress(depth: Floats, poisson: float) -> AxisStress:
 
 
 def line_largest_shear() -> SubsurfaceMaximum:
-    """0.30028 p0 at 0.78615 b: exactly φ^(−5/2) at φ^(−1/2) with the golden ratio φ."""
+    """Largest shear stress below a line contact and its depth, 0.30028 p0 at 0.78615 b: exactly φ^(−5/2) at φ^(−1/2)
+    with the golden ratio φ."""
     return SubsurfaceMaximum(GOLDEN**-2.5, GOLDEN**-0.5)
 
 
@@ -223,7 +225,8 @@ def _largest(function: Callable[[Floats], Floats]) -> SubsurfaceMaximum:
 
 
 def stick_ratio_line(load_ratio: float) -> float:
-    """c/b = √(1 − Q/μP) of a line contact pushed sideways with Q < μP (Cattaneo; Johnson, section 7.2)."""
+    """Half-width of stick over that of contact c/b = √(1 − Q/μP) of a line contact pushed sideways with Q < μP
+    (Cattaneo; Johnson, section 7.2)."""
     return sqrt(1 - _partial(load_ratio))
 
 
@@ -240,7 +243,8 @@ def cattaneo_traction(x: Floats, half_width: float, friction: float, peak: float
 
 
 def stick_ratio_sphere(load_ratio: float) -> float:
-    """c/a = (1 − Q/μP)^⅓ of a sphere contact pushed sideways (Mindlin; Johnson, section 7.2)."""
+    """Radius of stick over that of contact c/a = (1 − Q/μP)^⅓ of a sphere contact pushed sideways (Mindlin; Johnson,
+    section 7.2)."""
     return (1 - _partial(load_ratio)) ** (1 / 3)
 
 

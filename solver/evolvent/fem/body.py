@@ -122,7 +122,7 @@ class Body:
 
 
 def prescribed_displacements(body: Body) -> tuple[Bools, Floats]:
-    """Where the supports prescribe a displacement, (N, d), and its value there (N, d) [mm], zero elsewhere.
+    """Whether the supports prescribe a displacement, (N, d), and its value (N, d) [mm], zero elsewhere.
 
     Raises InputError where two supports, or a support and the rigid coupling, prescribe different ones.
     """

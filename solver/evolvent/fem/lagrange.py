@@ -47,5 +47,5 @@ def quadrature(shape: str, degree: int) -> tuple[Floats, Floats]:
 
 @cache
 def gmsh_permutation(shape: str, order: int) -> Ints:
-    """perm (k,): cells[:, perm] are in the node order of basix where cells are in that of gmsh."""
+    """Permutation perm (k,): cells[:, perm] are in the node order of basix where cells are in that of gmsh."""
     return dolfinx_compat.gmsh_permutation(shape, len(node_points(shape, order)))

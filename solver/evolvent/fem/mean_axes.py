@@ -26,18 +26,18 @@ class MeanAxes:
     """Inertia of a body with N nodes, n free degrees of freedom and r rigid motions, s of them free."""
 
     assembled: Assembled
-    """The body."""
+    """Assembled body."""
     mass: sp.csr_matrix
-    """M (N·d, N·d) [t]."""
+    """Mass matrix M (N·d, N·d) [t]."""
 
     @staticmethod
     def of(assembled: Assembled) -> MeanAxes:
-        """Of an assembled body. Raises CompileError, CacheError."""
+        """Inertia of an assembled body in its mean axes. Raises CompileError, CacheError."""
         return MeanAxes(assembled, mass_matrix(assembled.body))
 
     @cached_property
     def motions(self) -> Floats:
-        """All rigid motions (N·d, r)."""
+        """Shapes of all rigid motions (N·d, r)."""
         shapes = self.assembled.motions.shapes
         return shapes.reshape(self.mass.shape[0], shapes.shape[2])
 
@@ -53,12 +53,12 @@ class MeanAxes:
 
     @cached_property
     def carried(self) -> Floats:
-        """M R m⁻¹ (n, s): how much of a resultant on the free rigid motions each degree of freedom is to bear."""
+        """Distribution M R m⁻¹ (n, s) of a resultant on the free rigid motions over the degrees of freedom."""
         free = self.assembled.motions.free
         return np.linalg.solve(self.rigid_mass[np.ix_(free, free)], self.coupling[:, free].T).T
 
     def times(self, w: Floats) -> Floats:
-        """M̂ w (n, ...) of deformations w (n, ...)."""
+        """Mass M̂ w (n, ...) of deformations w (n, ...) in mean axes."""
         free = self.assembled.free
         whole = np.zeros((self.mass.shape[0], *w.shape[1:]))
         whole[free] = w
@@ -66,7 +66,7 @@ class MeanAxes:
         return np.asarray((self.mass @ whole)[free] - self.carried @ (rigid.T @ w))
 
     def shape(self, w: Floats) -> Floats:
-        """ŵ (N·d, ...) on all degrees of freedom, of deformations w (n, ...)."""
+        """Displacement ŵ (N·d, ...) of all degrees of freedom by deformations w (n, ...)."""
         whole = np.zeros((self.mass.shape[0], *w.shape[1:]))
         whole[self.assembled.free] = w
         return whole - self.motions[:, self.assembled.motions.free] @ (self.carried.T @ w)

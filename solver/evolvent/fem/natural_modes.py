@@ -14,7 +14,7 @@ from evolvent.fem.mean_axes import MeanAxes
 from evolvent_meshes.arrays import Floats
 
 MOST = 0.3
-"""Of all modes: from here on the dense eigenproblem is solved instead."""
+"""Fraction of all modes from which on the dense eigenproblem is solved."""
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class NaturalModes:
     """The lowest m modes of n degrees of freedom."""
 
     frequencies: Floats
-    """ω (m,), ascending [rad/s]."""
+    """Natural frequencies ω (m,), ascending [rad/s]."""
     shapes: Floats
-    """w (n, m) with wᵀ M̂ w = 1 [t^(−1/2)]."""
+    """Mode shapes w (n, m) with wᵀ M̂ w = 1 [t^(−1/2)]."""
 
 
 def natural_modes(

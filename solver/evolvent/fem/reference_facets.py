@@ -133,7 +133,7 @@ def subcell_rule(shape: str, order: int, degree: int) -> tuple[Floats, Floats]:
 
 
 def cross(a: Floats, b: Floats) -> Floats:
-    """a × b (..., 3); numpy.cross takes several times longer on short vectors."""
+    """Cross product a × b (..., 3); numpy.cross takes several times longer on short vectors."""
     return np.stack(
         [
             a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1],

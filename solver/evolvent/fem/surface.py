@@ -272,7 +272,8 @@ def facet_group(mesh: MeshData, group: str, of: str) -> Ints:
 
 
 def boundary_group(mesh: MeshData, group: str, of: str) -> Ints:
-    """As `facet_group`; raises MeshError also for facets inside the body and for facets that occur twice."""
+    """Facets of a group on the boundary, as by `facet_group`; raises MeshError also for facets inside the body and for
+    facets that occur twice."""
     facets = facet_group(mesh, group, of)
     try:
         adjacent_cells(mesh.cells, facets, len(mesh.points))

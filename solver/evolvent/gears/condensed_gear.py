@@ -43,11 +43,11 @@ class GearBody:
     """One gear, condensed onto the loaded flanks of its teeth; its bore is held in the gear's frame."""
 
     gear: GearParameters
-    """Its geometry."""
+    """Geometry of the gear."""
     mesh: MeshData
     """Sector of tooth 0 in the gear's frame."""
     material: Material
-    """Its material."""
+    """Material of the gear."""
     flank: Surface
     """Loaded flank of tooth 0 in the gear's frame, n nodes."""
     traction: NitscheTraction | None
@@ -61,7 +61,7 @@ class GearBody:
     condense_seconds: float
     """Wall time of the condensation [s]."""
     worn: Floats | None = None
-    """Depth (n,) that the flank has lost and that mesh and compliance do not include [mm]."""
+    """Worn depth (n,) of the flank that mesh and compliance do not include [mm]."""
     levels: tuple[FlankLevel, ...] = ()
     """Levels by which the flank is finer than the mesh, which then has no flank modifications either; none: its nodes
     are the mesh's."""
@@ -88,12 +88,12 @@ class GearBody:
 
     @cached_property
     def tip_zone(self) -> Bools:
-        """(n,) bool: the flank nodes on the tip edge."""
+        """Flank nodes (n,) bool on the tip edge."""
         r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
         return r > r.max() - 1e-6 * self.gear.normal_module
 
     def rows(self, tooth: int, nodes: Ints) -> Ints:
-        """(len, 2) rows of the chain for flank nodes of tooth pair i."""
+        """Rows (len, 2) of the chain for flank nodes of tooth pair i."""
         return np.column_stack([np.full(len(nodes), self.member.sign * tooth), nodes])
 
 
@@ -144,7 +144,8 @@ def sector_body(mesh: MeshData, material: Material, member: Member) -> Body:
 def _sector_system(
     body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float
 ) -> SectorSystem:
-    """Separate from its caller so that the full matrices are freed when the elimination starts."""
+    """Sector ready for elimination. It is separate from its caller so that the full matrices are freed when the
+    elimination starts."""
     parts, nodes = sector_parts(body, flank, traction, pitch), root_nodes(body.mesh)
     observed = node_functionals(nodes, body.mesh.dimension, parts.stiffness.shape[0]) if len(nodes) else None
     return SectorSystem.of(
@@ -157,17 +158,17 @@ class SectorParts:
     """Matrices of a sector with Nitsche's constant term, N degrees of freedom."""
 
     stiffness: sp.csr_matrix
-    """(N, N) [N/mm]."""
+    """Stiffness (N, N) [N/mm]."""
     functionals: sp.csr_matrix
-    """(m, N) displacements of the flank that enter the contact."""
+    """Displacements (m, N) of the flank that enter the contact."""
     low: Ints
-    """Degrees of freedom of the low cut face that are free."""
+    """Free degrees of freedom of the low cut face."""
     high: Ints
-    """Those of the high cut face, in matching order."""
+    """Free degrees of freedom of the high cut face, in the order of those of the low one."""
     free: Ints
-    """All free degrees of freedom."""
+    """Numbers of all free degrees of freedom."""
     graph: sp.csr_matrix
-    """(N, N) pattern of the stiffness without Nitsche's term."""
+    """Pattern (N, N) of the stiffness without Nitsche's term."""
 
 
 def sector_parts(body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float) -> SectorParts:

@@ -52,9 +52,9 @@ class WholeGear:
     """Compliance of the flanks of some teeth, in one matrix; see `ring_compliance.Compliance`."""
 
     matrix: Floats
-    """(teeth·n·d, teeth·n·d) [mm/N]."""
+    """Compliance (teeth·n·d, teeth·n·d) [mm/N]."""
     dimension: int
-    """d."""
+    """Space dimension d."""
     teeth: range
     """Numbers of the teeth."""
 
@@ -64,14 +64,15 @@ class WholeGear:
         return len(self.matrix) // (self.dimension * len(self.teeth))
 
     def jumps(self, parts: Sequence[MappedNodes]) -> Floats:
-        """See `ring_compliance.Compliance.jumps`."""
+        """Compliance E C Eᵀ of the parts' maps E as a matrix, in their order (mm/N where E = 1)."""
         dofs = [self._dofs(np.full(len(part.nodes), part.tooth), part.nodes) for part in parts]
         rows = [[part.jumps(other.jumps(self.matrix[np.ix_(j, i)]).T) for other, j in zip(parts, dofs)]
                 for part, i in zip(parts, dofs)]
         return np.block(rows)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        """See `ring_compliance.Compliance.apply`."""
+        """Displacements (..., k_out, d) [mm] of `rows_out` (k_out, 2) under `forces` (..., k_in, d) [N] on `rows_in`. A
+        row is a tooth and a flank node."""
         picked = self.matrix[np.ix_(self._dofs(*rows_in.T), self._dofs(*rows_out.T))]
         loads = forces.reshape(*forces.shape[:-2], -1)
         return np.asarray(loads @ picked).reshape(*forces.shape[:-2], -1, self.dimension)
@@ -86,17 +87,17 @@ class WholeSystem:
     """Matrices of a whole gear with Nitsche's constant term, N degrees of freedom."""
 
     stiffness: sp.csr_matrix
-    """(N, N) [N/mm]."""
+    """Stiffness (N, N) [N/mm]."""
     functionals: sp.csr_matrix
-    """(m, N) displacements of the flanks that enter the contact."""
+    """Displacements (m, N) of the flanks that enter the contact."""
     free: Ints
     """Free degrees of freedom."""
     graph: sp.csr_matrix
-    """(N, N) pattern of the stiffness without Nitsche's term."""
+    """Pattern (N, N) of the stiffness without Nitsche's term."""
     teeth: range
-    """Numbers of the teeth of these flanks."""
+    """Numbers of the teeth whose flanks are condensed."""
     dimension: int
-    """d."""
+    """Space dimension d."""
 
     def condensed(self, threads: Threads = nullcontext) -> WholeGear:
         """Compliance of the flanks. Raises NotPositiveDefinite, OutOfMemory."""

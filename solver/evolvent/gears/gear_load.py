@@ -13,15 +13,15 @@ from evolvent_meshes.gears.member import Member
 
 @dataclass(frozen=True, eq=False)
 class TorqueCourse:
-    """How a torque varies over an angular pitch, linearly between equidistant phases."""
+    """Variation of a torque over an angular pitch, linear between equidistant phases."""
 
     shares: Floats
-    """(n,) of the constant torque, at phases 0, 1/n, ... of the pitch."""
+    """Torque over the constant torque (n,), at phases 0, 1/n, ... of the pitch."""
     teeth: int
-    """Of the pinion."""
+    """Number of teeth of the pinion."""
 
     def at(self, angle: float) -> float:
-        """Share at a pinion rotation [rad]."""
+        """Torque over the constant torque at a pinion rotation [rad]."""
         n = len(self.shares)
         phase = angle * self.teeth / (2.0 * np.pi)
         return float(np.interp(phase * n, np.arange(n), self.shares, period=n))
@@ -32,11 +32,11 @@ class GearLoad:
     """A torque on one gear; the other one is driven."""
 
     torque: float
-    """[N·mm; per mm of face width in 2D]."""
+    """Torque [N·mm; per mm of face width in 2D]."""
     on: Member = Member.PINION
-    """The gear with the torque."""
+    """Gear on which the torque acts."""
     course: TorqueCourse | None = None
-    """How it varies with the mesh; None: not at all."""
+    """Variation of the torque over an angular pitch; None: constant."""
 
     def at(self, angle: float) -> float:
         """The torque at a pinion rotation [rad]; [N·mm; per mm of face width in 2D]."""

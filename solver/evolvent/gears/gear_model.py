@@ -1,4 +1,4 @@
-"""What all positions of a gear pair share: condensed gears, load and window.
+"""Model of a gear pair for all positions: condensed gears, load and window.
 
 With several ranks each gear is condensed on one; the patches of flanks in levels are divided among all.
 """
@@ -24,31 +24,31 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 Mesher = Callable[[GearProblem, Member], SectorMesh]
-"""Makes the sector mesh of the pinion or the wheel; with levels, the gear is condensed in levels."""
+"""Function that makes the sector mesh of the pinion or the wheel; with levels, the gear is condensed in levels."""
 Preparer = Callable[..., "Preparation"]
 """A function with the parameters of `prepare_model`."""
 
 
 @dataclass(frozen=True)
 class GearModel:
-    """All that positions share."""
+    """Condensed gears, load and search settings for all positions of a gear pair."""
 
     pair: GearPair
     """Both gears and the position of their axes."""
     bodies: tuple[GearBody, GearBody]
     """Condensed pinion and wheel."""
     teeth: tuple[int, ...]
-    """Tooth pairs that are searched."""
+    """Tooth pairs that are searched for contact."""
     load: GearLoad
-    """The torque."""
+    """Torque and the gear on which it acts."""
     half_width: float
-    """Of the contact window to begin with [mm of profile arc]; infinite: the whole flanks are searched."""
+    """Initial half-width of the contact window [mm of profile arc]; infinite: the whole flanks are searched."""
     friction_terms: bool = False
-    """Keep tangential components and friction history also at μ = 0."""
+    """Whether tangential components and friction history are kept also at μ = 0."""
     deflected: bool = False
-    """Search contact again on deflected flanks."""
+    """Whether contact is searched again on deflected flanks."""
     pitches: int = 1
-    """Base pitches that a sweep has."""
+    """Number of angular pitches of a sweep."""
 
     @property
     def width_factor(self) -> float:
@@ -63,7 +63,7 @@ class GearModel:
 
 @dataclass(frozen=True)
 class Preparation:
-    """A gear model and what it took."""
+    """Gear model with the wall time of its meshing and condensation."""
 
     model: GearModel
     """Condensed gears, ready for positions."""
@@ -74,16 +74,16 @@ class Preparation:
 
     @property
     def assemble_seconds(self) -> float:
-        """Summed over both gears."""
+        """Wall seconds of assembling both gears, summed."""
         return sum(body.assemble_seconds for body in self.model.bodies)
 
     @property
     def condense_seconds(self) -> float:
-        """Summed over both gears."""
+        """Wall seconds of condensing both gears, summed."""
         return sum(body.condense_seconds for body in self.model.bodies)
 
     def without_time(self) -> Preparation:
-        """The same where its time counts elsewhere."""
+        """Preparation with zero wall times, where they count elsewhere."""
         pinion, wheel = (replace(body, assemble_seconds=0.0, condense_seconds=0.0) for body in self.model.bodies)
         return Preparation(replace(self.model, bodies=(pinion, wheel)), 0.0, 0.0)
 
@@ -93,9 +93,9 @@ class CondensedGears:
     """Both gears, condensed for one torque or several."""
 
     finest: GearProblem
-    """Under the lightest of the torques, which wants most levels."""
+    """Problem under the lightest of the torques, which needs most levels."""
     bodies: tuple[Mapping[int, GearBody], Mapping[int, GearBody]]
-    """Pinion and wheel, by how many of the finest levels of their flanks are omitted."""
+    """Condensed pinion and wheel, by the number of omitted finest levels of their flanks."""
     mesh_seconds: float
     """Wall seconds of meshing."""
     seconds: float
@@ -152,7 +152,7 @@ def condensed_gears(
 
 
 def _omitted(problem: GearProblem, finest: GearProblem, member: Member) -> int:
-    """How many levels of the finest problem's flank are too fine for this one."""
+    """Number of levels of the finest problem's flank that are too fine for this problem."""
     if not is_two_level(finest):
         return 0
     most, own = (len(levelled_sector(each, member).levels) for each in (finest, problem))

@@ -44,14 +44,14 @@ class Stand:
         )
 
     def turned(self, gear: Member, δ: float) -> Stand:
-        """The same with δ [rad] added to the extra rotation of a gear."""
+        """Angular position with δ [rad] added to the extra rotation of a gear."""
         extra = list(self.extra)
         extra[gear] += δ
         return replace(self, extra=(extra[0], extra[1]))
 
     @property
     def transmission_error(self) -> float:
-        """r_b1 φ_1 − r_b2 φ_2 [mm]."""
+        """Transmission error r_b1 φ_1 − r_b2 φ_2 [mm]."""
         pinion, wheel = self.pair.gears
         return float(pinion.base_radius * self.extra[0] + wheel.base_radius * self.extra[1])
 
@@ -71,17 +71,17 @@ class Stand:
         return Rotation.from_rotvec(misalignment_rotation(self.pair)).as_matrix() if gear == Member.WHEEL else np.eye(3)
 
     def axis(self, gear: Member) -> Floats:
-        """(3,) unit vector of a gear's axis."""
+        """Unit vector (3,) of a gear's axis."""
         return self.tilt(gear)[:, 2]
 
     def roll_distance(self, tooth: int, z: Floats) -> Floats:
-        """ξ [mm] of tooth pair i's contact line at heights z."""
+        """Roll distance ξ [mm] of tooth pair i's contact line at heights z."""
         return self.pair.roll_distance(self.angle, tooth, z)
 
 
 def line_of_action(pair: GearPair, d: int) -> Floats:
-    """(2, d): unit vector n along the line of action in the transverse section, from pinion to wheel, in which ξ grows,
-    and e_z × n, along which the pinion slides over the wheel by (1 + 1/u) ξ per radian."""
+    """Two unit vectors (2, d): n along the line of action in the transverse section, from pinion to wheel, in which ξ
+    grows, and e_z × n, along which the pinion slides over the wheel by (1 + 1/u) ξ per radian."""
     α = pair.working_pressure_angle
     return np.array([[np.sin(α), np.cos(α), 0.0], [-np.cos(α), np.sin(α), 0.0]])[:, :d]
 
@@ -95,7 +95,7 @@ def turn(angle: float, d: int) -> Floats:
 
 
 def spin(points: Floats, centre: Floats, axis: Floats = E_Z) -> Floats:
-    """a × (x − c): displacement per radian about an axis (3,), (n, d); in 2D the axis is z."""
+    """Displacement a × (x − c) per radian about an axis (3,), (n, d); in 2D the axis is z."""
     arm = points - centre
     if arm.shape[1] == 2:
         return np.column_stack([-arm[:, 1], arm[:, 0]])

@@ -36,7 +36,8 @@ class LoadList:
         mesh: Mesher = run_mesh,
         meshed: Callable[[], None] = lambda: None,
     ) -> Preparation:
-        """See `prepare_model`. problem: one of the list. The time of condensing counts where it happens."""
+        """Gear model of one of the list's problems, as by `prepare_model`. The time of condensing counts for the first
+        one."""
         if (known := self._gears.get(mesh)) is not None:
             meshed()
             return known.under(problem).without_time()

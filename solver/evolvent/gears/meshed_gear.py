@@ -22,26 +22,26 @@ class MeshedGear:
     """The sector of tooth 0 and its flank, in the gear's frame."""
 
     mesh: MeshData
-    """The sector."""
+    """Mesh of the sector."""
     flank: Surface
-    """The loaded flank."""
+    """Loaded flank."""
     has_levels: bool = False
     """Whether the flank is finer than the sector; else its nodes are the sector's."""
 
     @property
     def flank_facets(self) -> Ints:
-        """(m, k) points of the flank's facets, in the order of gmsh."""
+        """Points (m, k) of the flank's facets, in the order of gmsh."""
         from_gmsh = gmsh_permutation(self.flank.shape, self.flank.order)
         return self.flank.facets[:, np.argsort(from_gmsh)]
 
     @staticmethod
     def of(body: GearBody) -> MeshedGear:
-        """Of a condensed gear."""
+        """Sector and flank of a condensed gear."""
         return MeshedGear(body.mesh, body.flank, bool(body.levels))
 
 
 def meshed_gear(problem: GearProblem, member: Member) -> MeshedGear:
-    """Of the pinion or the wheel, without condensing it. Raises MeshError, TooMuchRelief."""
+    """Sector and flank of the pinion or the wheel, without condensing it. Raises MeshError, TooMuchRelief."""
     sector = run_mesh(problem, member)
     if isinstance(sector, LevelledMesh):
         return MeshedGear(sector.mesh, levelled_flank(problem, member, sector), True)

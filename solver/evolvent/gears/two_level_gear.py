@@ -25,21 +25,21 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.flank_points import on_flank
 
 PatchName = tuple[int, Block]
-"""A patch's level, and the coarse cells with forces."""
+"""Level of a patch, and its coarse cells with forces."""
 
 
 @dataclass(frozen=True)
 class TimedResponse:
-    """The response of a patch."""
+    """Response of a patch, and the time to compute it."""
 
     response: BlockResponse
     seconds: float
-    """Wall time that it took [s]."""
+    """Wall time of the condensation [s]."""
 
 
 @dataclass(frozen=True)
 class FlankPatches:
-    """The patches that a gear's flank needs, and what becomes of their responses.
+    """The patches that a gear's flank needs, and the levels from their responses.
 
     counts: after how many levels contact is computed; see `towers_of`.
     towers: of each level, from the coarsest to the finest.
@@ -56,14 +56,14 @@ class FlankPatches:
     def of(
         problem: GearProblem, member: Member, sector: LevelledMesh, counts: Sequence[int], safety: float = SAFETY
     ) -> FlankPatches:
-        """Of the pinion's or the wheel's flank. safety: factor on the stabilisation of Nitsche's method."""
+        """Patches of the pinion's or the wheel's flank. safety: factor on the stabilisation of Nitsche's method."""
         flux_safety = safety if member is Member.PINION else None
         towers = towers_of(_refinement(problem, member, sector), counts, flux_safety)
         patches = tuple(tuple(each.patches()) for each in towers)
         return FlankPatches(tuple(counts), tuple(towers), patches, flux_safety)
 
     def named(self) -> dict[PatchName, LoadedPatch]:
-        """All patches."""
+        """All patches by name."""
         levels = enumerate(self.patches)
         return {(level, patch.block): patch for level, patches in levels for patch in patches}
 

@@ -64,5 +64,5 @@ def _division(flanks: Mapping[Member, FlankPatches], busy: list[float]) -> list[
 
 
 def _cost(sector: LevelledMesh) -> float:
-    """See `LoadedPatch.cost`."""
+    """Estimated cost of a coarse sector, closed to the ring, in the measure of `LoadedPatch.cost`."""
     return SECTOR * float(len(sector.mesh.cells)) ** COST

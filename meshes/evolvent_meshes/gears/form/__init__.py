@@ -1,1 +1,1 @@
-"""What makes the form of a tooth and holds its body: tip of the rack, edge of the tip, support."""
+"""Form of a tooth and support of its body: tip of the rack, edge of the tip, support."""

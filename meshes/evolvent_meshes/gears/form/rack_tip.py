@@ -26,7 +26,7 @@ PROTUBERANCE_ANGLE = 0.5
 """Angle of the protuberance's flank over α_n: tools of 20° have 8 to 12°. It matters where the arc does not reach the
 involute by itself."""
 SEARCHED = 801
-"""Points of the tip among which the crossing with the involute is sought."""
+"""Number of points of the tip among which the crossing with the involute is sought."""
 
 
 @dataclass(frozen=True)
@@ -40,17 +40,17 @@ class RackTip:
     land: float
     """Half of the flat land at the bottom [mm]."""
     height: float
-    """Of the tip circle's centre above the pitch line, at most 0 [mm]."""
+    """Height of the tip circle's centre above the pitch line, at most 0 [mm]."""
     radius: float
-    """Of the tip circle, ρ_fP [mm]."""
+    """Radius of the tip circle, ρ_fP [mm]."""
     straight: float
     """Angle of the flank that follows the arc [rad]."""
     reference_radius: float
-    """Of the gear [mm]."""
+    """Reference radius of the gear [mm]."""
     sector_angle: float
-    """θ of the middle of the gear's tooth space, π/z [rad]."""
+    """Angle θ of the middle of the gear's tooth space, π/z [rad]."""
     stretch: float
-    """cos β."""
+    """Stretch cos β of the transverse section."""
 
     def generated(self, direction: ArrayLike) -> tuple[Floats, Floats]:
         """Radii [mm] and angles θ [rad] (…) that points of the tip generate.

@@ -18,25 +18,25 @@ from numpy.typing import ArrayLike
 from evolvent_meshes.arrays import Floats
 
 ON_FLANK = 1.0 / 3.0
-"""Of a rounding's turn."""
+"""Fraction of a rounding's turn that the flank takes."""
 CHAMFER = math.pi / 4.0
-"""Between a chamfer and the radius on which it begins [rad]."""
+"""Angle between a chamfer and the radius on which it begins [rad]."""
 
 
 @dataclass(frozen=True)
 class TipEdge:
-    """The edge at θ > 0 of a tooth, by polar coordinates."""
+    """Edge of a tooth's tip at θ > 0, in polar coordinates."""
 
     form: tuple[float, float]
-    """Radius [mm] and θ [rad] where it begins, on the involute."""
+    """Radius [mm] and θ [rad] at the beginning of the edge, on the involute."""
     corner: tuple[float, float]
-    """Where the mesh of the flank ends."""
+    """Radius [mm] and θ [rad] at the end of the flank's mesh."""
     end: tuple[float, float]
-    """Where the tip circle begins."""
+    """Radius [mm] and θ [rad] at the beginning of the tip circle."""
     centre: tuple[float, float] | None
-    """Of a rounding's arc; None of a chamfer."""
+    """Radius [mm] and θ [rad] of the centre of a rounding's arc; None of a chamfer."""
     radius: float
-    """Of a rounding's arc [mm]; 0 of a chamfer."""
+    """Radius of a rounding's arc [mm]; 0 of a chamfer."""
 
     @staticmethod
     def chamfered(form: tuple[float, float], tip: float) -> TipEdge:
@@ -57,7 +57,7 @@ class TipEdge:
         return TipEdge(form, (math.hypot(x, y), math.atan2(y, x)), (tip, centre[1]), centre, radius)
 
     def angle(self, radius: ArrayLike) -> Floats:
-        """θ (…) [rad] at radii (…) [mm] from the beginning to the corner."""
+        """Angles θ (…) [rad] of the edge at radii (…) [mm] from the beginning to the corner."""
         r = np.asarray(radius, dtype=float)
         if self.centre is None:
             start, θ = self.form
@@ -67,7 +67,7 @@ class TipEdge:
 
     @property
     def length(self) -> float:
-        """From the beginning to the corner [mm]."""
+        """Length of the edge from the beginning to the corner [mm]."""
         radii = self.radii(64)
         points = radii[:, None] * np.column_stack([np.cos(self.angle(radii)), np.sin(self.angle(radii))])
         return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())

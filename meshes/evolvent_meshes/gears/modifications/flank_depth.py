@@ -17,14 +17,14 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.modifications.modifications import Modifications
 
 MICROMETRE = 1e-3
-"""[mm]."""
+"""Micrometre [mm]."""
 Order = Literal[0, 1]
-"""0: a modification [µm], 1: its derivative [µm/mm]."""
+"""Order of a derivative: 0: a modification [µm], 1: its derivative [µm/mm]."""
 
 
 @dataclass(frozen=True)
 class Kink:
-    """Where a linear relief begins: a convex kink of the profile.
+    """Convex kink of the profile where a linear relief begins.
 
     relief: its term.
     roll_length: ρ [mm].
@@ -123,7 +123,7 @@ class FlankDepth:
 
 
 def _relief(amount: float, distance: Floats, length: float, parabolic: bool, order: Order) -> Floats:
-    """From 0 at a distance of 0 and before it to the amount at the length."""
+    """Relief or its derivative: 0 up to a distance of 0, and from there to the amount at the length."""
     share = np.maximum(distance, 0.0) / length
     if order:
         return np.asarray(amount / length * (2.0 * share if parabolic else share > 0.0))
@@ -136,5 +136,6 @@ def _crowning(amount: float, share: Floats, length: float, order: Order) -> Floa
 
 
 def _slope(amount: float, share: Floats, length: float, order: Order) -> Floats:
-    """From 0 at the start of the length to the amount at its end; a negative one from its end to its start."""
+    """Slope modification or its derivative: from 0 at the start of the length to the amount at its end; a negative one
+    from its end to its start."""
     return np.full_like(share, amount / length) if order else amount * share + 0.5 * abs(amount)

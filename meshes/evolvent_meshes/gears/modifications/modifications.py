@@ -26,11 +26,11 @@ AMOUNTS: Mapping[str, tuple[str, str]] = {
 }
 """Fields of `Modifications` that are amounts [µm] -> term and symbol."""
 SIGNED = ("profile_slope_um", "helix_slope_um", "twist_um")
-"""Those that may be negative."""
+"""Amounts of `Modifications` that may be negative."""
 OVER_FACE = ("lead_crowning_um", "helix_slope_um", "end_relief_um", "twist_um")
-"""Those with which transverse sections differ."""
+"""Amounts of `Modifications` that vary over the face, so that transverse sections differ."""
 FROM_CONTROL_DIAMETER = ("root_relief_um", "profile_crowning_um", "profile_slope_um", "twist_um")
-"""Those that are measured from the profile control diameter on."""
+"""Amounts of `Modifications` that are measured from the profile control diameter on."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Modifications:
         return not self.amounts.keys().isdisjoint(OVER_FACE)
 
     def only(self, name: str) -> Modifications:
-        """With this amount alone, or with none where it has another name."""
+        """Modifications with this amount alone, or with none where it has another name."""
         return replace(self, **dict.fromkeys(self.amounts.keys() - {name}, 0.0))  # type: ignore[arg-type]
 
     @property

@@ -1,8 +1,8 @@
-"""A compliance that is known by products with forces, and roughly as a matrix, to precondition with.
+"""Compliance applied to forces without a matrix, with an approximate matrix for preconditioning.
 
     A ≈ blockdiag(A_1, A_2, ...) + U K Uᵀ
 
-The blocks are contacts that hardly feel each other, such as the tooth pairs of a gear: normal components only, good to
+The blocks are weakly coupled contacts, such as the tooth pairs of a gear: normal components only, good to
 a few per cent. U are the few smooth modes that they share.
 """
 
@@ -24,29 +24,29 @@ from evolvent_meshes.arrays import Floats, Ints, Reals
 
 
 class SurfaceCompliance(Protocol):
-    """What one body adds to the compliance of n nodes, in local jumps with k components."""
+    """Contribution of one body to the compliance of n nodes, in local jumps with k components."""
 
     def times(self, force: Reals) -> Reals:
         """Jumps (n, k) [mm] under forces (n, k) [N], of their precision."""
         ...
 
     def normal(self) -> SurfaceCompliance:
-        """Of the normal components."""
+        """Contribution to the compliance between normal components alone."""
         ...
 
     def nearly(self) -> NearlyNormal:
-        """Roughly, as a matrix."""
+        """Approximation of the contribution as block matrix and modes, for preconditioning."""
         ...
 
     @property
     def nbytes(self) -> int:
-        """Memory of its own [bytes]."""
+        """Memory that the contribution uses alone [bytes]."""
         ...
 
 
 @dataclass(frozen=True)
 class AppliedCompliance:
-    """A as the sum of what bodies add.
+    """Compliance A as the sum of the contributions of the bodies, applied to forces without a matrix.
 
     surfaces: one a body.
     k: components a node.
@@ -60,31 +60,31 @@ class AppliedCompliance:
 
     @cached_property
     def rough(self) -> NearlyNormal:
-        """A, roughly."""
+        """Approximation of A as block matrix and modes, for preconditioning."""
         return self.known or NearlyNormal.sum([surface.nearly() for surface in self.surfaces])
 
     def times(self, force: Reals) -> Reals:
-        """See `JumpCompliance.times`."""
+        """Jumps A f (m,) [mm] under forces f (m,) [N]."""
         f = force.reshape(-1, self.k)
         return np.asarray(sum(surface.times(f) for surface in self.surfaces)).ravel()
 
     def active(self, unknowns: Ints) -> AppliedActive:
-        """See `JumpCompliance.active`."""
+        """Compliance between some unknowns (u,)."""
         return AppliedActive(self, unknowns)
 
     @property
     def nbytes(self) -> int:
-        """See `JumpCompliance.nbytes`; its rough matrix, without which it is not used, included."""
+        """Memory [bytes] of the contributions of the bodies and of the approximate matrix."""
         return self.rough.nbytes + sum(surface.nbytes for surface in self.surfaces)
 
     def normal(self) -> AppliedCompliance:
-        """See `JumpCompliance.normal`."""
+        """Compliance between normal components alone."""
         return AppliedCompliance(tuple(s.normal() for s in self.surfaces), 1, self.rough.normal(self.k))
 
 
 @dataclass(frozen=True)
 class AppliedActive:
-    """The same among some unknowns (u,)."""
+    """Applied compliance between some unknowns (u,)."""
 
     whole: AppliedCompliance
     unknowns: Ints
@@ -92,23 +92,24 @@ class AppliedActive:
     refactored = True
 
     def times(self, force: Reals) -> Reals:
-        """See `ActiveCompliance.times`."""
+        """Jumps A f (u,) [mm] under forces f (u,) [N] on the unknowns."""
         f = np.zeros(self.whole.rough.size, dtype=np.float32)
         f[self.unknowns] = force
         return self.whole.times(f)[self.unknowns]
 
     def inverse(self, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> BlockInverse:
-        """See `ActiveCompliance.inverse`."""
+        """Approximate inverse of the tangent [I + M A, −M H; Hᵀ, D], contact by contact. kept: columns of M that are
+        not left out."""
         return BlockInverse(self.whole.rough, self.unknowns, M, motions, kept)
 
 
 COUNTED = 1e-2
-"""Of the largest: what a mode changes of the compliance to count for the rough matrix."""
+"""Fraction of the largest change of the compliance by any mode above which the approximate matrix has a mode."""
 
 
 @dataclass(frozen=True)
 class ModalSurface:
-    """Φ diag(s) Φᵀ, added to the compliance of an `AppliedCompliance` whose rough matrix has it already.
+    """Modal contribution Φ diag(s) Φᵀ to an `AppliedCompliance` whose approximate matrix already has it.
 
     modes: Φ (n·k, m).
     amounts: s (m,), none zero [mm/N per unit amplitudes].
@@ -120,23 +121,23 @@ class ModalSurface:
     k: int
 
     def times(self, force: Reals) -> Reals:
-        """See `SurfaceCompliance.times`."""
+        """Jumps (n, k) [mm] by the modes under forces (n, k) [N], in the precision of the forces."""
         moved = self.modes @ (self.amounts * (force.ravel() @ self.modes))
         return np.asarray(moved, dtype=force.dtype).reshape(force.shape)
 
     def normal(self) -> ModalSurface:
-        """See `SurfaceCompliance.normal`."""
+        """Modal contribution to the compliance between normal components alone."""
         return ModalSurface(self.modes[:: self.k], self.amounts, 1)
 
     def nearly(self) -> NearlyNormal:
-        """Those modes that count."""
+        """Modes that change the compliance by more than `COUNTED` of the largest change."""
         size = np.abs(self.amounts) * np.sum(self.modes**2, axis=0)
         counted = size > COUNTED * size.max(initial=0.0)
         return NearlyNormal((), self.modes[:, counted], self.amounts[counted])
 
     @property
     def nbytes(self) -> int:
-        """See `SurfaceCompliance.nbytes`."""
+        """Memory of the modes [bytes]."""
         return self.modes.nbytes
 
 
@@ -154,7 +155,8 @@ def with_modes(A: JumpCompliance, modes: Floats, amounts: Floats) -> JumpComplia
 def summed(
     parts: Sequence[NDArray[np.float64] | SurfaceCompliance], k: int, known: NearlyNormal | None = None
 ) -> JumpCompliance:
-    """The compliance of bodies that are all matrices (n·k, n·k), or all products; known: roughly, if it is known."""
+    """Compliance of bodies that are all matrices (n·k, n·k), or all applied without one. known: its approximate matrix,
+    None where that is not known."""
     matrices = [part for part in parts if isinstance(part, np.ndarray)]
     surfaces = [part for part in parts if not isinstance(part, np.ndarray)]
     if not surfaces:

@@ -38,7 +38,7 @@ class BandFactor:
             raise NotConverged("contact: wanted a tangent that can be inverted, found a singular one")
 
     def solve(self, right: Singles) -> Singles:
-        """(I + B)⁻¹ right, (s,) or (s, c)."""
+        """Solution (I + B)⁻¹ right, (s,) or (s, c)."""
         if not right.size:
             return right
         solution, _ = self._gbtrs(self._lu, self._below, self._above, right, self._pivots)

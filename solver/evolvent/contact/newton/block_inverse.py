@@ -30,7 +30,7 @@ TANGENTIAL = 1.2
 
 @dataclass(frozen=True)
 class NearlyNormal:
-    """A compliance of n nodes with k components, roughly: blocks of normal components, and modes of all components.
+    """Approximate compliance of n nodes with k components: blocks of normal components, and modes of all components.
 
     blocks: (n_i, n_i) of consecutive nodes, symmetric, sparse, in single precision [mm/N].
     modes: U (n·k, r).
@@ -43,7 +43,7 @@ class NearlyNormal:
 
     @property
     def size(self) -> int:
-        """n·k."""
+        """Number of unknowns, n·k."""
         return len(self.modes)
 
     @property
@@ -57,11 +57,11 @@ class NearlyNormal:
         return np.cumsum([0] + [block.shape[0] for block in self.blocks])
 
     def normal(self, k: int) -> NearlyNormal:
-        """That of the normal components."""
+        """Approximate compliance between normal components alone."""
         return NearlyNormal(self.blocks, self.modes[::k], self.couplings)
 
     def with_modes(self, other: NearlyNormal) -> NearlyNormal:
-        """With the modes of another one added."""
+        """Approximate compliance with the modes of another one added."""
         couplings = np.concatenate([self.couplings, other.couplings])
         return NearlyNormal(self.blocks, np.hstack([self.modes, other.modes]), couplings)
 
@@ -72,7 +72,7 @@ class NearlyNormal:
 
     @staticmethod
     def sum(parts: Sequence[NearlyNormal]) -> NearlyNormal:
-        """Of bodies with the same blocks of nodes."""
+        """Sum of the approximate compliances of bodies with the same blocks of nodes."""
         blocks = tuple(sum(each[1:], each[0]) for each in zip(*(part.blocks for part in parts)))
         return NearlyNormal(
             blocks, np.hstack([p.modes for p in parts]), np.concatenate([p.couplings for p in parts])
@@ -80,9 +80,9 @@ class NearlyNormal:
 
 
 class BlockInverse:
-    """T⁻¹, roughly.
+    """Approximate inverse T⁻¹ of a tangent.
 
-    rough: A.
+    rough: approximate compliance A.
     unknowns: (u,) that are active.
     M: (u, u) among them.
     motions: H (u, r) among them and D (r, r).
@@ -115,7 +115,7 @@ class BlockInverse:
             raise NotConverged("contact: wanted nodes that resist every free rigid motion, found too few") from error
 
     def solve(self, right: Floats) -> Floats:
-        """(f, δ) (u + r,) for (b, c)."""
+        """Solution (f, δ) (u + r,) for a right-hand side (b, c)."""
         b, load = np.split(right, [self._M.shape[0]])
         z = np.zeros(self._M.shape[1])
         for block in self._blocks:
@@ -127,7 +127,7 @@ class BlockInverse:
         return np.concatenate([b - self._M @ z, v[len(v) - len(load) :]]).astype(right.dtype)
 
     def _solved(self, right: Floats) -> Floats:
-        """(I + A_b M_S)⁻¹ right, (s, c)."""
+        """Solution (I + A_b M_S)⁻¹ right of all blocks, (s, c)."""
         result = np.zeros_like(right)
         for block in self._blocks:
             result[block.kept] = block.solved(right[block.kept].astype(np.float32))
@@ -151,7 +151,8 @@ class _Block:
 
     @staticmethod
     def of(block: sp.csr_matrix, node: Ints, axis: Ints, M: sp.csr_matrix, kept: Ints) -> _Block:
-        """block: of its nodes. node: of each active unknown; axis: component, −1 where it is of another contact."""
+        """One contact with the factor of its block. block: of its nodes. node: of each active unknown; axis: component,
+        −1 where it is of another contact."""
         near, mine = np.flatnonzero(axis >= 0), np.flatnonzero(axis[kept] >= 0)
         A = block[node[kept[mine]]]
         mine = mine[reverse_cuthill_mckee(A[:, node[kept[mine]]], symmetric_mode=True)]
@@ -161,16 +162,16 @@ class _Block:
         return _Block(mine, near, A, factor)
 
     def moved(self, b: Floats) -> Singles:
-        """A_b b (s_i,) for forces (u,) on all active unknowns."""
+        """Jumps A_b b (s_i,) for forces (u,) on all active unknowns."""
         return np.asarray(self.A @ b[self.near].astype(np.float32))
 
     def solved(self, right: Singles) -> Singles:
-        """(I + A_b M_S)⁻¹ right, (s_i, ...)."""
+        """Solution (I + A_b M_S)⁻¹ right of the block, (s_i, ...)."""
         return self.factor.solve(right)
 
 
 def _of_components(block: sp.csr_matrix, node: Ints, rows: Ints, columns: Ints) -> sp.csr_matrix:
-    """(s, u) compliance between unknowns from that of normal components (s, nodes): none between different components,
+    """Compliance (s, u) between unknowns from that of normal components (s, nodes): none between different components,
     more between tangential ones. node: (u,); rows, columns: their components."""
     parts, order = [], []
     for axis in np.unique(rows):

@@ -81,7 +81,7 @@ class CondensedSystem:
 
 @dataclass(frozen=True)
 class _State:
-    """What the contact law makes of some x.
+    """Contact forces and values of the contact law at some unknowns x.
 
     force: nodal forces f (n, k) [N].
     jump: J (n, k) [mm].
@@ -104,11 +104,11 @@ class ContactEquations:
         self._last: tuple[Floats, _State] | None = None
 
     def split(self, x: Floats) -> tuple[Floats, Floats]:
-        """f (n, k) [N] and δ (r,) of x; x has δ times the lever, so that all residuals are forces."""
+        """Forces f (n, k) [N] and motions δ (r,) of x; x has δ times the lever, so that all residuals are forces."""
         return x[: self.n * self.k].reshape(self.n, self.k), x[self.n * self.k :] / self.system.lever
 
     def join(self, force: Floats, motion: Floats) -> Floats:
-        """x of f (n, k) and δ (r,)."""
+        """Unknowns x of forces f (n, k) and motions δ (r,)."""
         return np.concatenate([force.ravel(), motion * self.system.lever])
 
     def scale(self, x: Floats) -> float:
@@ -116,7 +116,7 @@ class ContactEquations:
         return max(self.system.scale, float(np.abs(self.split(x)[0][:, 0]).sum()))
 
     def state(self, x: Floats) -> _State:
-        """At x; stored, since residual, tangent and work are needed at the same x."""
+        """Contact state at x. It is stored, since residual, tangent and work are needed at the same x."""
         if self._last is None or not np.array_equal(self._last[0], x):
             force, motion = self.split(x)
             jump = self.system.jumps(force, motion)
@@ -125,18 +125,19 @@ class ContactEquations:
         return self._last[1]
 
     def residual(self, x: Floats) -> Floats:
-        """f − F(J), then Hᵀ f + D δ − F over the lever, (n·k + r,) [N]."""
+        """Residual f − F(J), then Hᵀ f + D δ − F over the lever, (n·k + r,) [N]."""
         at, (_, δ) = self.state(x), self.split(x)
         return np.concatenate([(at.force - at.contact).ravel(), self._balance(at.force, δ) / self.system.lever])
 
     def _balance(self, force: Floats, motion: Floats) -> Floats:
-        """Hᵀ f + D δ − F (r,) [N, N·mm]."""
+        """Residual Hᵀ f + D δ − F of the free rigid motions (r,) [N, N·mm]."""
         system = self.system
         return system.motion.T @ force.ravel() + system.resistance @ motion - system.load
 
     def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
-        """See `NonlinearProblem.work`. The energy ½fᵀAf + ∫(contact) + ½δᵀDδ − Fᵀδ of bodies under any nodal forces f
-        has the derivatives A(f − F(J)) and Hᵀ F(J) + Dδ − F."""
+        """Work of the residual forces at x − α step along the step, as function of α [N·mm]. The energy ½fᵀAf +
+        ∫(contact) + ½δᵀDδ − Fᵀδ of bodies under any nodal forces f has the derivatives A(f − F(J)) and Hᵀ F(J) + Dδ −
+        F."""
         system, (df, dδ), (_, δ) = self.system, self.split(step), self.split(x)
         at = self.state(x)
         after = self.state(x - step)  # stored: the next state if the full step is taken
@@ -151,17 +152,17 @@ class ContactEquations:
         return along
 
     def solve(self, x: Floats, right: Floats) -> Floats:
-        """T(x)⁻¹ right, as accurate as this Newton step needs."""
+        """Newton step T(x)⁻¹ right, as accurate as this step needs."""
         accuracy = _accuracy(float(np.linalg.norm(right)), self.scale(x))
         return self.system.steps.solve(self.tangent(x), right, accuracy)
 
     def tangent(self, x: Floats) -> Tangent:
-        """T(x)."""
+        """Tangent T at x."""
         steps = self.system.steps
         return Tangent.of(self.system.operator, self.state(x).law, steps.A, steps.motions)
 
     def _law(self, jump: Floats) -> LawValues:
-        """Values at the points under jumps (n, k)."""
+        """Values of the contact law at the points under jumps (n, k)."""
         return self.law(self.system.operator.trial(jump, self.slip))
 
 

@@ -87,7 +87,7 @@ def frictionless(
 
 
 def _overlapping(system: CondensedSystem) -> Bools:
-    """(q,) bool: the points that overlap without contact forces; all where contact alone holds the free motions."""
+    """Points (q,) bool that overlap without contact forces; all where contact alone holds the free motions."""
     free = free_motion(system.motion, system.jump, system.load, system.resistance)
     if free is None:
         return np.ones(len(system.operator.weights), dtype=bool)
@@ -181,7 +181,7 @@ def with_components(values: Floats, k: int) -> Floats:
 
 
 def _assumed_contact(system: CondensedSystem, touching: Bools, slip: Floats | None = None) -> Floats:
-    """x of the linear problem in which the points `touching` (q,) bool are bonded: they may also pull."""
+    """Unknowns x of the linear problem in which the points `touching` (q,) bool are bonded: they may also pull."""
 
     def law(trial: Floats) -> LawValues:
         return LawValues(np.where(touching[:, None], trial, 0.0), touching[:, None, None] * np.eye(system.k))

@@ -16,16 +16,16 @@ class Inverse(Protocol):
     """An inverse of a tangent, exact or approximate."""
 
     def solve(self, right: Reals) -> Reals:
-        """(f, δ) for a right-hand side, both (u + r,). Raises NotConverged where it is singular."""
+        """Solution (f, δ) for a right-hand side, both (u + r,). Raises NotConverged where it is singular."""
         ...
 
 
 class ActiveCompliance(Protocol):
-    """A among u of its unknowns, in the precision in which Newton steps are iterated."""
+    """Compliance A between u of its unknowns, in the precision in which Newton steps are iterated."""
 
     @property
     def dtype(self) -> type:
-        """Of the iterations."""
+        """Floating-point type of the iterations of a Newton step."""
         ...
 
     @property
@@ -35,7 +35,7 @@ class ActiveCompliance(Protocol):
         ...
 
     def times(self, force: Reals) -> Reals:
-        """A f (u,) [mm]."""
+        """Jumps A f (u,) [mm] under forces f (u,) [N]."""
         ...
 
     def inverse(self, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> Inverse:
@@ -49,7 +49,7 @@ class ActiveCompliance(Protocol):
 
 
 class JumpCompliance(Protocol):
-    """A (m, m) [mm/N], symmetric."""
+    """Compliance A (m, m) [mm/N] of a contact system in local jumps, symmetric."""
 
     @property
     def k(self) -> int:
@@ -58,24 +58,24 @@ class JumpCompliance(Protocol):
 
     @property
     def matrix(self) -> Floats | None:
-        """Its entries, None where it is known by products only."""
+        """Matrix A (m, m) [mm/N], None where the compliance is only applied to forces."""
         ...
 
     @property
     def nbytes(self) -> int:
-        """Memory [bytes], without what it shares with those of other positions."""
+        """Memory [bytes], without parts shared with the compliances of other positions."""
         ...
 
     def times(self, force: Floats) -> Floats:
-        """A f (m,) [mm] under forces f (m,) [N]."""
+        """Jumps A f (m,) [mm] under forces f (m,) [N]."""
         ...
 
     def active(self, unknowns: Ints) -> ActiveCompliance:
-        """A among some unknowns (u,)."""
+        """Compliance between some unknowns (u,)."""
         ...
 
     def normal(self) -> JumpCompliance:
-        """A of the normal components."""
+        """Compliance between normal components alone."""
         ...
 
 
@@ -92,28 +92,28 @@ class DenseCompliance:
 
     @property
     def nbytes(self) -> int:
-        """See `JumpCompliance.nbytes`."""
+        """Memory of the matrix [bytes]."""
         return self.matrix.nbytes
 
     def times(self, force: Floats) -> Floats:
-        """See `JumpCompliance.times`."""
+        """Jumps A f (m,) [mm] under forces f (m,) [N]."""
         return np.asarray(self.matrix @ force)
 
     def active(self, unknowns: Ints) -> DenseActive:
-        """See `JumpCompliance.active`."""
+        """Compliance matrix between some unknowns (u,), in single precision."""
         among = np.empty((len(unknowns), len(unknowns)), dtype=np.float32)
         for row, unknown in zip(among, unknowns):  # takes half the time of np.ix_
             row[:] = self.matrix[unknown][unknowns]
         return DenseActive(among)
 
     def normal(self) -> DenseCompliance:
-        """See `JumpCompliance.normal`."""
+        """Compliance matrix between normal components alone."""
         return DenseCompliance(np.ascontiguousarray(self.matrix[:: self.k, :: self.k]), 1)  # BLAS needs that
 
 
 @dataclass(frozen=True)
 class DenseActive:
-    """Its part among the active unknowns: single precision halves the memory that is read.
+    """Compliance matrix between active unknowns, in single precision, which halves the memory to read.
 
     A: (u, u).
     """
@@ -123,9 +123,9 @@ class DenseActive:
     refactored = False
 
     def times(self, force: Reals) -> Reals:
-        """See `ActiveCompliance.times`."""
+        """Jumps A f (u,) [mm] under forces f (u,) [N]."""
         return np.asarray(self.A @ force)
 
     def inverse(self, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> Inverse:
-        """See `ActiveCompliance.inverse`; exact but for the columns left out."""
+        """Inverse of the tangent [I + M A, −M H; Hᵀ, D], exact but for the columns of M that are left out."""
         return ReducedTangent.of(M, self.A, motions, kept)

@@ -33,7 +33,7 @@ class _Product:
 def gmres(
     times: Product, inverse: Product, right: Reals, relative: float, limit: int
 ) -> tuple[Reals, bool]:
-    """y (n,) with |right − T y| ≤ relative |right|, and whether that was reached in `limit` iterations.
+    """Solution y (n,) with |right − T y| ≤ relative |right|, and whether that was reached in `limit` iterations.
 
     times: T y. inverse: nearly T⁻¹ y, applied from the right, so that the residual is that of T. Both get vectors of
     the precision of `right`, and their exceptions are raised again.

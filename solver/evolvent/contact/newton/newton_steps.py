@@ -46,7 +46,7 @@ class ActiveUnknowns:
 
     @staticmethod
     def of(unknowns: Ints, A: JumpCompliance, motions: FreeMotions) -> ActiveUnknowns:
-        """From A (m, m) and H (m, r)."""
+        """Active unknowns with A (m, m) and H (m, r) restricted to them."""
         active = A.active(unknowns)
         return ActiveUnknowns(unknowns, active, motions.of(unknowns, active.dtype))
 
@@ -59,17 +59,17 @@ class ActiveUnknowns:
         return sp.csr_matrix((M.data.astype(self.A.dtype), place[M.indices], ends), (size, size))
 
     def restrict(self, y: Floats) -> Reals:
-        """y (m + r,) restricted to the active unknowns, (u + r,)."""
+        """Values y (m + r,) restricted to the active unknowns, (u + r,)."""
         return np.concatenate([y[self.unknowns], y[len(y) - self.motions.count :]]).astype(self.A.dtype)
 
     def extend(self, y: Reals, size: int) -> Floats:
-        """y (u + r,) extended by zeros to `size` = m + r."""
+        """Values y (u + r,) extended by zeros to `size` = m + r."""
         whole = np.zeros(size)
         whole[self.unknowns], whole[size - self.motions.count :] = np.split(y, [len(self.unknowns)])
         return whole
 
     def times(self, M: sp.csr_matrix, y: Reals) -> Reals:
-        """T y (u + r,)."""
+        """Product T y (u + r,) with the tangent."""
         force, motion = np.split(y, [len(self.unknowns)])
         jump = self.motions.jumps @ motion - self.A.times(force)
         return np.concatenate([force - M @ jump, self.motions.balance(force, motion)])
@@ -131,8 +131,8 @@ class NewtonSteps:
             self._factored = None
 
     def _by_gmres(self, M: sp.csr_matrix, kept: Ints, right: Reals, relative: float) -> tuple[Reals, bool]:
-        """y (u + r,), and whether its residual is at most `relative` of `right`, or what their precision allows; an
-        earlier factor that did not lead there is dropped."""
+        """Solution y (u + r,), and whether its residual is at most `relative` of `right`, or what their precision
+        allows; an earlier factor that did not lead there is dropped."""
         active, relative = self._active, max(relative, self._finest)
         limit = ITERATIONS if self._factored is None else REUSE_ITERATIONS
         factored = self._factored or active.A.inverse(M, active.motions, np.searchsorted(active.unknowns, kept))

@@ -17,7 +17,7 @@ from evolvent_meshes.arrays import Bools, Floats
 
 
 class PressureSensitivity:
-    """About an equilibrium `state` of a frictionless system (k = 1).
+    """Changes of the pressure with the gap about an equilibrium `state` of a frictionless system (k = 1).
 
     leaving: (q,) bool, points that lose their pressure; by default none.
     released: (q,) changes of all pressures by that loss [MPa].
@@ -40,13 +40,14 @@ class PressureSensitivity:
         self.released = self._slope * (operator.shape @ self._jump(operator.weights * lost)) - lost
 
     def __call__(self, opening: Floats) -> Floats:
-        """∂λ (q,) or (q, c) [MPa] for ∂g (q,) or (q, c) [mm]."""
+        """Changes ∂λ (q,) or (q, c) [MPa] of the pressure for changes ∂g (q,) or (q, c) [mm] of the gap."""
         operator, slope = self._system.operator, self._slope.reshape(-1, *[1] * (opening.ndim - 1))
         jump = self._jump(operator.weights.reshape(slope.shape) * slope * opening)
         return np.asarray(slope * (operator.shape @ jump - opening))
 
     def _jump(self, less: Floats) -> Floats:
-        """∂J (n, ...) [mm] if the forces of the points decrease by `less` (q, ...) [N] at constant jump."""
+        """Change of the jump ∂J (n, ...) [mm] if the forces of the points decrease by `less` (q, ...) [N] at constant
+        jump."""
         n, r = self._system.motion.shape
         nodal = self._system.operator.shape.T @ less
         y = self._inverse.solve(np.concatenate([-nodal, np.zeros((r, *nodal.shape[1:]))]))

@@ -26,7 +26,7 @@ class FreeMotion(NotConverged):
 
 @dataclass(frozen=True)
 class FreeMotions:
-    """The jumps that they cause, and what resists them."""
+    """Free rigid motions of bodies: the jumps that they cause, and the forces that resist them."""
 
     jumps: Reals
     """H (m, r), jumps by unit amplitudes."""
@@ -35,20 +35,20 @@ class FreeMotions:
 
     @staticmethod
     def unresisted(jumps: Reals) -> FreeMotions:
-        """Of statics."""
+        """Free rigid motions in statics, without inertia. jumps: H (m, r)."""
         return FreeMotions(jumps, np.zeros((jumps.shape[1],) * 2, dtype=jumps.dtype))
 
     @property
     def count(self) -> int:
-        """r."""
+        """Number r of free rigid motions."""
         return self.jumps.shape[1]
 
     def of(self, unknowns: Ints, dtype: type) -> FreeMotions:
-        """The same with some of the jumps (u,), in a precision."""
+        """Free rigid motions with some of the jumps (u,), in a precision."""
         return FreeMotions(self.jumps[unknowns].astype(dtype), self.resistance.astype(dtype))
 
     def balance(self, force: Reals, motion: Reals) -> Reals:
-        """Hᵀ f + D δ (r,)."""
+        """Residual Hᵀ f + D δ (r,) of the balance of forces on the free rigid motions."""
         return self.jumps.T @ force + self.resistance @ motion
 
 
@@ -69,12 +69,12 @@ class ReducedTangent:
 
     @staticmethod
     def of(M: sp.csr_matrix, A: Reals, motions: FreeMotions, columns: Ints) -> ReducedTangent:
-        """From M and A, (m, m), the free rigid motions and the columns to keep."""
+        """Reduced tangent from M and A, (m, m), the free rigid motions and the columns to keep."""
         return ReducedTangent(columns, M[:, columns], A[columns], motions)
 
     def solve(self, right: Reals) -> Reals:
-        """(f, δ) for a right-hand side, both (m + r,) or (m + r, c). Raises NotConverged where the system is singular
-        to double precision."""
+        """Solution (f, δ) for a right-hand side, both (m + r,) or (m + r, c). Raises NotConverged where the system is
+        singular to double precision."""
         H = self.motions.jumps
         b, load = np.split(right, [len(H)])
         if not len(self.columns) + len(load):  # nothing touches and nothing is free

@@ -48,8 +48,8 @@ class Tangent:
 
     @staticmethod
     def of(operator: ContactOperator, law: LawValues, A: JumpCompliance, motions: FreeMotions) -> Tangent:
-        """At the state with the law's values at the quadrature points. Raises NotConverged where nothing touches and
-        nothing else resists the motions."""
+        """Tangent at the state with the law's values at the quadrature points. Raises NotConverged where nothing
+        touches and nothing else resists the motions."""
         M = operator.tangent(law)
         k = law.traction.shape[1]
         normal, used = np.arange(M.shape[0]) % k == 0, _columns(M)
@@ -62,7 +62,7 @@ class Tangent:
         return Tangent(M, A, motions, np.flatnonzero(kept), bool(np.array_equal(kept, used)))
 
     def times(self, y: Floats) -> Floats:
-        """T y."""
+        """Product T y with the tangent."""
         force, motion = np.split(y, [self.M.shape[0]])
         jump = self.motions.jumps @ motion - self.A.times(force)
         return np.concatenate([force - self.M @ jump, self.motions.balance(force, motion)])
@@ -84,7 +84,7 @@ def _columns(M: sp.csr_matrix) -> Bools:
 
 
 def _sticking_nodes(operator: ContactOperator, law: LawValues) -> Bools:
-    """(n,) bool: nodes of facets with a point whose traction changes with the tangential jump."""
+    """Nodes (n,) bool of facets with a point whose traction changes with the tangential jump."""
     sticking = np.abs(law.derivative[:, 1:, 1:]).max(axis=(1, 2), initial=0.0) > SLIDING
     near = np.zeros(len(operator.nodes), dtype=bool)
     near[operator.shape[np.flatnonzero(sticking)].indices] = True

@@ -33,7 +33,7 @@ from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats, Ints
 
 ContactLaw = Callable[[Floats], LawValues]
-"""From trial tractions (q, k) to the law's values at the points."""
+"""Function from trial tractions (q, k) to the law's values at the points."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class ContactOperator:
         return np.asarray(self.shape.T @ (self.weights[:, None] * traction))
 
     def tangent(self, law: LawValues) -> sp.csr_matrix:
-        """∂f/∂J (n·k, n·k) [N/mm], sparse, in full blocks of node pairs."""
+        """Derivative ∂f/∂J (n·k, n·k) [N/mm], sparse, in full blocks of node pairs."""
         active = np.flatnonzero(law.derivative.any(axis=(1, 2)))
         slope = self.weights[active, None] * self.slope(law.traction.shape[1])[active]
         return sandwiched(self.shape[active], law.derivative[active] * slope[:, None])
@@ -139,8 +139,8 @@ class ContactOperator:
         return np.asarray(sum(traction[:, i : i + 1] * axis for i, axis in enumerate(axes)))
 
     def local_map(self, side: int, rotation: Floats) -> sp.csr_matrix:
-        """(n·d, n_s·d): from displacements of surface `side` (1 or 2), in its body's frame, to local jumps, with the
-        sign of the jump; rotation: (d, d), from the body's frame to the common one."""
+        """Matrix (n·d, n_s·d) from displacements of surface `side` (1 or 2), in its body's frame, to local jumps, with
+        the sign of the jump; rotation: (d, d), from the body's frame to the common one."""
         jump, sign = (self.jump1, 1.0) if side == 1 else (self.jump2.matrix(), -1.0)
         return frames_times(self.frames @ rotation * sign, jump)
 
@@ -154,7 +154,7 @@ def frames_times(frames: Floats, weights: sp.csr_matrix) -> sp.csr_matrix:
 
 
 def sandwiched(N: sp.csr_matrix, D: Floats) -> sp.csr_matrix:
-    """Σ_q N_qi D_q N_qj for N (q, n) and D (q, k, k), as (n·k, n·k) of blocks (i, j).
+    """Matrix Σ_q N_qi D_q N_qj for N (q, n) and D (q, k, k), as (n·k, n·k) of blocks (i, j).
 
     The points of a facet are contiguous and have the same nodes, so that a facet's sum is a dense product: five times
     faster than k² sparse products.
@@ -225,8 +225,8 @@ def _projection(
     N1: sp.csr_matrix,
     N2: sp.csr_matrix,
 ) -> MortarProjection:
-    """Π (n, n2): M Π = ∫N_1 N_2∘π. Where surface 2 does not cover a facet, u_2 is extended from its nearest nodes, so
-    that Π is defined there too and preserves constants."""
+    """Mortar projection Π (n, n2): M Π = ∫N_1 N_2∘π. Where surface 2 does not cover a facet, u_2 is extended from its
+    nearest nodes, so that Π is defined there too and preserves constants."""
     w = sp.diags(pairing.weight)
     covered = N1.T @ w @ N1
     nearest = cKDTree(second.points).query(first.points[nodes])[1]
@@ -237,7 +237,7 @@ def _projection(
 
 
 def mass_matrix(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
-    """∫N_k N_l over some facets, (n, n) [mm²; mm in 2D], for the sorted nodes of these facets."""
+    """Mass matrix ∫N_k N_l over some facets, (n, n) [mm²; mm in 2D], for the sorted nodes of these facets."""
     xi, w = quadrature(surface.shape, 2 * surface.order + 2)
     N, dN = tabulate(surface.shape, surface.order, xi)
     tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets[facets]], dN)

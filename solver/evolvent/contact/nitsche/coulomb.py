@@ -59,7 +59,7 @@ def starting_guess(trial: Floats, friction: Floats | float, heading: Floats) -> 
 
 
 def _pressure(trial: Floats) -> LawValues:
-    """λ = [p]_+, without tangential traction."""
+    """Contact pressure λ = [p]_+, without tangential traction."""
     n, d = trial.shape
     law = LawValues(np.zeros((n, d)), np.zeros((n, d, d)))
     law.traction[:, 0] = np.maximum(trial[:, 0], 0.0)

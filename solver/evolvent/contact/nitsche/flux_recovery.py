@@ -28,8 +28,8 @@ from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 SAFETY = 2.0
-"""γ over the limit C of single cells. With γ averaged between cells up to 1.18 is needed; results hardly change up to
-50."""
+"""Stabiliser γ over the limit C of single cells. With γ averaged between cells up to 1.18 is needed; results hardly
+change up to 50."""
 AT_ONCE = 64
 """Cells whose stiffness is held at a time: of 3,500 at once it would be 0.6 GB, whose pages took half of the time."""
 
@@ -135,14 +135,14 @@ class _ContactCells:
         return _ContactCells(self.mesh, surface, self.nodes[cells], self.coordinates[cells], self.slots[cells])
 
     def gradients(self, xi: Floats) -> tuple[Floats, Floats]:
-        """∇N (f, q, k, d) [1/mm] and det J (f, q) at the reference points xi (q, d)."""
+        """Shape function gradients ∇N (f, q, k, d) [1/mm] and det J (f, q) at the reference points xi (q, d)."""
         dN = tabulate(self.mesh.shape, self.mesh.order, xi)[1]
         J = np.swapaxes(dN @ self.coordinates[:, None], 2, 3)  # (f, q, d, t)
         return np.swapaxes(dN, 1, 2) @ np.linalg.inv(J), np.linalg.det(J)
 
     def facet_tractions(self, material: Material, normals: Floats) -> Floats:
-        """From displacements of the cells to σ(u)n at the nodes of the facets, (f, kf, d, k, d) [MPa/mm]; normals:
-        (f, kf, d)."""
+        """Matrices from displacements of the cells to tractions σ(u)n at the nodes of the facets, (f, kf, d, k, d)
+        [MPa/mm]; normals: (f, kf, d)."""
         everywhere = self.gradients(node_points(self.mesh.shape, self.mesh.order))[0]
         at_facet = np.take_along_axis(everywhere, self.slots[:, :, None, None], axis=1)
         f, kf, k, d = at_facet.shape
@@ -184,7 +184,7 @@ def _trace_constants(cells: _ContactCells, material: Material) -> Floats:
 
 
 def _largest_ratio(K: Floats, T: Floats, M: Floats) -> Floats:
-    """max_v (Tv)ᵀM(Tv) / vᵀKv of each cell, (f,), where T vanishes for rigid motions."""
+    """Largest ratio max_v (Tv)ᵀM(Tv) / vᵀKv of each cell, (f,), where T vanishes for rigid motions."""
     L = np.linalg.cholesky(M)
     W = np.swapaxes(L, 1, 2) @ T
     return np.asarray(np.linalg.eigvalsh(W @ np.linalg.solve(K, np.swapaxes(W, 1, 2)))[:, -1])
@@ -209,7 +209,7 @@ def _element_stiffness(cells: _ContactCells, material: Material) -> Floats:
 
 
 def _facet_mass(surface: Surface, γ: Floats | None = None) -> Floats:
-    """∫_F γ N_i N_j of each facet, (f, kf, kf); γ: (n,) at the nodes, 1/γ linear between, by default 1."""
+    """Mass matrix ∫_F γ N_i N_j of each facet, (f, kf, kf); γ: (n,) at the nodes, 1/γ linear between, by default 1."""
     xi, w = quadrature(surface.shape, 2 * surface.order + 2)
     N, dN = tabulate(surface.shape, surface.order, xi)
     tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets], dN)
@@ -220,7 +220,7 @@ def _facet_mass(surface: Surface, γ: Floats | None = None) -> Floats:
 
 
 def _weighted_mass(surface: Surface, γ: Floats) -> sp.csr_matrix:
-    """∫γ N_i N_j over the surface, (n, n)."""
+    """Weighted mass matrix ∫γ N_i N_j over the surface, (n, n)."""
     i, j = np.broadcast_arrays(surface.facets[:, :, None], surface.facets[:, None, :])
     n = len(surface.points)
     return sp.csr_matrix((_facet_mass(surface, γ).ravel(), (i.ravel(), j.ravel())), (n, n))

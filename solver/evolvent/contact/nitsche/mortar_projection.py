@@ -18,15 +18,15 @@ import scipy.sparse.linalg as spla
 from evolvent_meshes.arrays import Floats, Ints
 
 MANY = 0.25
-"""Columns over those of Π itself from which on it is written out: for 360 nodes, as many columns as a compliance has
-take a fifth of the time so, and Π is no larger than they are."""
+"""Number of columns, over those of Π itself, from which on Π is computed as a matrix. With 360 nodes and as many
+columns as a compliance has, this takes a fifth of the time, and Π is no larger than the columns."""
 ROUNDING = 1e-15
-"""Of the projection's largest entry: smaller ones are rounding errors."""
+"""Entry of the projection, over the largest one, below which it is a rounding error."""
 
 
 @dataclass(frozen=True)
 class MortarProjection:
-    """Π (n, n2).
+    """Mortar projection Π (n, n2).
 
     mass: M (n, n) [mm²; mm in 2D].
     mixed: B (n, n2) [mm²; mm in 2D].
@@ -37,7 +37,7 @@ class MortarProjection:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(n, n2)."""
+        """Shape (n, n2) of Π."""
         n, n2 = self.mixed.shape
         return n, n2
 
@@ -47,18 +47,18 @@ class MortarProjection:
         return np.unique(self.mixed.indices)
 
     def __matmul__(self, values: Floats) -> Floats:
-        """Π values, (n, ...) from (n2, ...)."""
+        """Projected values Π values, (n, ...) from (n2, ...)."""
         columns = np.asarray(values, dtype=float).reshape(len(values), -1)
         if columns.shape[1] < MANY * self.mixed.shape[1]:
             return self.solved(_times(self.mixed, values))
         return np.asarray(self._dense @ columns).reshape(-1, *values.shape[1:])
 
     def transposed(self, values: Floats) -> Floats:
-        """Πᵀ values, (n2, ...) from (n, ...)."""
+        """Transposed projection Πᵀ values, (n2, ...) from (n, ...)."""
         return _times(self._mixed_transposed, self.solved(values))
 
     def solved(self, values: Floats) -> Floats:
-        """M⁻¹ values, (n, ...)."""
+        """Solution M⁻¹ values, (n, ...)."""
         flat = np.asarray(values, dtype=float).reshape(len(values), -1)
         return np.asarray(self._factor.solve(flat)).reshape(values.shape)
 
@@ -67,14 +67,14 @@ class MortarProjection:
         return self.solved(self.mixed[:, columns].toarray())
 
     def matrix(self) -> sp.csr_matrix:
-        """Π (n, n2), without entries that are rounding errors."""
+        """Sparse matrix Π (n, n2), without entries that are rounding errors."""
         dense = self.at(self.columns)
         dense[np.abs(dense) < ROUNDING * np.abs(dense).max(initial=0.0)] = 0.0
         block = sp.csr_matrix(dense)
         return sp.csr_matrix((block.data, self.columns[block.indices], block.indptr), self.shape)
 
     def of_columns(self) -> MortarProjection:
-        """Π of the nodes that it reads alone, (n, columns)."""
+        """Projection Π from only the nodes of surface 2 that it reads, (n, columns)."""
         return MortarProjection(self.mass, self.mixed[:, self.columns].tocsr())
 
     @staticmethod
@@ -85,7 +85,7 @@ class MortarProjection:
 
     @cached_property
     def _dense(self) -> Floats:
-        """Π (n, n2)."""
+        """Dense matrix Π (n, n2)."""
         return self.solved(self.mixed.toarray())
 
     @cached_property
@@ -97,7 +97,7 @@ class MortarProjection:
         return self.mixed.T.tocsr()
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the factor, which cannot be sent between ranks."""
+        """State without the factor, which cannot be sent between ranks."""
         return {"mass": self.mass, "mixed": self.mixed}
 
 

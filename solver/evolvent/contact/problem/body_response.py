@@ -1,4 +1,4 @@
-"""How a body answers contact forces in one step, with s free rigid motions of r, and k functionals."""
+"""Response of a body to contact forces in one step, with s free rigid motions of r, and k functionals."""
 
 from __future__ import annotations
 
@@ -12,26 +12,27 @@ from evolvent_meshes.arrays import Floats
 
 
 class BodyResponse(Protocol):
-    """The part of a body in the contact system of a step: y = P R δ + displacement + C f, and what resists δ."""
+    """The part of a body in the contact system of a step: y = P R δ + displacement + C f, and the forces that resist
+    δ."""
 
     @property
     def compliance(self) -> Floats:
-        """C (k, k) [mm/N]."""
+        """Compliance C (k, k) of the functionals [mm/N]."""
         ...
 
     @property
     def displacement(self) -> Floats:
-        """(k,) functionals without contact forces and rigid motions [mm]."""
+        """Values (k,) of the functionals without contact forces and rigid motions [mm]."""
         ...
 
     @property
     def resistance(self) -> Floats:
-        """(s, s) force on the free rigid motions by unit amplitudes of them [N/mm, N, N·mm]."""
+        """Force (s, s) on the free rigid motions by unit amplitudes of them [N/mm, N, N·mm]."""
         ...
 
     @property
     def load(self) -> Floats:
-        """(s,) force on the free rigid motions beside that of the step [N, N·mm]."""
+        """Force (s,) on the free rigid motions beside that of the step [N, N·mm]."""
         ...
 
     def field(self, forces: Floats, motion: Floats) -> Floats:
@@ -42,35 +43,36 @@ class BodyResponse(Protocol):
 
 @dataclass(frozen=True)
 class StaticResponse:
-    """Of a body without inertia."""
+    """Response of a body without inertia to contact forces."""
 
     condensed: CondensedBody
-    """The body."""
+    """Condensed body."""
     factor: float
-    """Of its loads and prescribed displacements."""
+    """Factor on the loads and prescribed displacements of the body."""
     count: int
-    """s, of its rigid motions that are free in this step."""
+    """Number s of rigid motions that are free in this step."""
 
     @property
     def compliance(self) -> Floats:
-        """See `BodyResponse.compliance`."""
+        """Compliance C (k, k) of the functionals [mm/N]."""
         return self.condensed.compliance
 
     @property
     def displacement(self) -> Floats:
-        """See `BodyResponse.displacement`."""
+        """Values (k,) of the functionals without contact forces and rigid motions [mm]."""
         return self.factor * self.condensed.load_response
 
     @property
     def resistance(self) -> Floats:
-        """See `BodyResponse.resistance`."""
+        """Zero matrix (s, s): without inertia only contact resists the free rigid motions."""
         return np.zeros((self.count, self.count))
 
     @property
     def load(self) -> Floats:
-        """See `BodyResponse.load`."""
+        """Zero forces (s,) on the free rigid motions beside those of the step [N, N·mm]."""
         return np.zeros(self.count)
 
     def field(self, forces: Floats, motion: Floats) -> Floats:
-        """See `BodyResponse.field`."""
+        """Displacement of the nodes (N, d) [mm] under forces on the functionals (k,) [N] at amplitudes of all rigid
+        motions (r,)."""
         return self.condensed.displacement(forces, self.factor, motion)

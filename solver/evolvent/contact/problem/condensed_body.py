@@ -79,12 +79,14 @@ class CondensedBody:
         return deformed + self.assembled.motions.shapes @ motion
 
     def deformation(self, functional_forces: Floats, load: float) -> Floats:
-        """The same without the rigid motions, (N·d,) [mm]."""
+        """Displacement of the nodes without rigid motions (N·d,) [mm] under forces on the functionals (m,) [N] and a
+        load factor."""
         contact_load = (self.test_functionals.T @ functional_forces)[self.assembled.free]
         return self._displacement(load * self.load + contact_load, load)
 
     def _displacement(self, force: Floats, prescribed: float) -> Floats:
-        """(N·d,) under forces on the free degrees of freedom and a share of the prescribed displacements."""
+        """Displacement (N·d,) [mm] under forces on the free degrees of freedom and a fraction of the prescribed
+        displacements."""
         u = prescribed * self.assembled.prescribed
         u[self.assembled.free] = self.factor.solve(force)
         return u

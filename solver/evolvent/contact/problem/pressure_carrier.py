@@ -1,4 +1,4 @@
-"""Which of the two surfaces of a contact carries the pressure.
+"""Choice of the surface of a contact that carries the pressure.
 
 Nitsche's method takes the traction from one body, and with it the stabiliser γ, which is of the order of E/h of that
 body. If that body is much the stiffer one, γ is large against the stiffness of the contact. Rounding errors of the

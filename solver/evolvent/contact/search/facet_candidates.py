@@ -14,7 +14,7 @@ from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
 OPPOSED = -0.2
-"""n1·n2 at the centres of two facets above which they cannot face each other."""
+"""Product n1·n2 of the normals at the centres of two facets above which they cannot face each other."""
 AT_ONCE = 2000
 """Facets of surface 1: their candidates are lists of Python, which take forty bytes each."""
 SLIGHTLY_MORE = 1.0 + 1e-9  # of a radius: against rounding
@@ -47,7 +47,7 @@ def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_ga
 
 @dataclass(frozen=True)
 class _Layers:
-    """Where the partners of some facets of surface 1 lie: within reach along their normals.
+    """Space in which the partners of some facets of surface 1 lie: within reach along their normals.
 
     centre, radius: of balls around the facets, (m, d), (m,) [mm].
     normal: (m, d) at their centres.

@@ -96,14 +96,14 @@ def _check(surface1: Surface, surface2: Surface, max_gap: float, max_overlap: fl
 
 
 def _no_points(d: int) -> Pairing:
-    """Of surfaces out of each other's reach."""
+    """Empty pairing of surfaces that are out of reach."""
     facets, xi, values = np.empty(0, dtype=np.int64), np.empty((0, d - 1)), np.empty(0)
     return Pairing(facets, xi, facets, xi, values, values, 0.0)
 
 
 def _points(surface1: Surface, surface2: Surface, segments: Segments, max_gap: float, max_overlap: float,
             degree: int) -> Pairing:
-    """Step 4: quadrature points on the segments, and their partners."""
+    """Quadrature points on the segments, with their partners (step 4)."""
     rule, rule_weight = _rule(surface1.shape, degree)
     xi1, guess = rule @ segments.corners1, rule @ segments.corners2
     size = np.linalg.det(segments.corners1[:, 1:] - segments.corners1[:, :1])[:, None] * rule_weight

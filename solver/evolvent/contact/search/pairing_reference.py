@@ -26,7 +26,7 @@ _Row = tuple[int, Floats, int, Floats, float, float]
 
 def pair_surfaces_slowly(surface1: Surface, surface2: Surface, max_gap: float, max_overlap: float,
                          degree: int = 4) -> Pairing:
-    """As `pairing.pair_surfaces`, for a few facets. Raises RuntimeError where a root is not found."""
+    """Reference for `pairing.pair_surfaces`, for a few facets. Raises RuntimeError where a root is not found."""
     rows = []
     for f1 in range(len(surface1.facets)):
         for f2 in range(len(surface2.facets)):
@@ -69,7 +69,7 @@ def _at(surface: Surface, f: int, xi: Floats, limit: float = np.inf) -> tuple[Fl
 
 
 def _pulled_in(surface: Surface, xi: Floats, limit: float) -> Floats:
-    """xi, or the point at the limit on the line from the centre to it."""
+    """Reference point xi, or the point at the limit on the line from the centre to it."""
     cell = reference_cell(surface.shape, surface.order)
     size = 1.0
     for a, b in zip(cell.corners, np.roll(cell.corners, -1, axis=0), strict=True):
@@ -87,7 +87,7 @@ def _root(function: Callable[[Floats], Floats], start: Floats) -> Floats:
 
 
 def _project(surface: Surface, f: int, target: Floats) -> Floats:
-    """xi with x(xi) + gap n(xi) = target."""
+    """Reference point xi with x(xi) + gap n(xi) = target."""
 
     def miss(y: Floats) -> Floats:
         x, n = _at(surface, f, y[:-1], EXTENSION)
@@ -97,7 +97,7 @@ def _project(surface: Surface, f: int, target: Floats) -> Floats:
 
 
 def _follow(surface: Surface, f: int, x1: Floats, n1: Floats) -> tuple[Floats, float]:
-    """xi and gap with x(xi) = x1 + gap n1."""
+    """Reference point xi and gap with x(xi) = x1 + gap n1."""
     centre = reference_cell(surface.shape, surface.order).centre
     solution = _root(lambda y: _at(surface, f, y[:-1])[0] - x1 - y[-1] * n1, np.append(centre, 0.0))
     return solution[:-1], float(solution[-1])

@@ -55,7 +55,7 @@ def largest(v: Floats) -> Floats:
 
 
 def dot(a: Floats, b: Floats) -> Floats:
-    """a·b along a short last axis, on which NumPy's own reduction is slow."""
+    """Dot product a·b along a short last axis, on which NumPy's own reduction is slow."""
     total = a[..., 0] * b[..., 0]
     for i in range(1, a.shape[-1]):
         total = total + a[..., i] * b[..., i]

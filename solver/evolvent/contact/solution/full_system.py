@@ -47,7 +47,7 @@ class FullContact:
         return self.K.shape[0] + len(self.condensed.load)
 
     def state(self, x: Floats) -> LawValues:
-        """The law's values at x."""
+        """Values of the contact law at x."""
         u, δ = x[: self.K.shape[0]], x[self.K.shape[0] :]
         jump = (self.trial @ u + self.prescribed + self.condensed.motion @ δ).reshape(len(self.op.nodes), -1)
         return self.law(self.op.trial(jump, self.slip))
@@ -59,18 +59,19 @@ class FullContact:
         return np.concatenate([bulk, self.condensed.motion.T @ f - self.condensed.load])
 
     def tangent(self, x: Floats) -> sp.csc_matrix:
-        """∂residual/∂x, sparse."""
+        """Sparse matrix ∂residual/∂x."""
         slope = self.op.tangent(self.state(x))
         H = sp.csr_matrix(self.condensed.motion)
         left, right = sp.hstack([self.test, H]), sp.hstack([self.trial, H])
         return (sp.block_diag([self.K, sp.csr_matrix((H.shape[1], H.shape[1]))]) + left.T @ slope @ right).tocsc()
 
     def solve(self, x: Floats, right: Floats) -> Floats:
-        """tangent⁻¹ right."""
+        """Newton step tangent⁻¹ right."""
         return spla.splu(self.tangent(x)).solve(right)
 
     def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
-        """See `NonlinearProblem.work`: the residual is the gradient of the energy."""
+        """Work of the residual forces at x − α step along the step, as function of α [N·mm]: the residual is the
+        gradient of the energy."""
         return lambda α: -float(step @ self.residual(x - α * step))
 
     def scale(self, x: Floats) -> float:
@@ -88,7 +89,8 @@ def full_solution(problem: Problem, step: Step, start: Floats | None = None) -> 
 
 
 def full_equilibrium(step_system: StepSystem, slip: Floats, start: Floats | None = None) -> tuple[Floats, FullContact]:
-    """The same at any step of a sweep; slip: (Σn, d−1) since the step before, as of `StepSystem.slip`."""
+    """Displacements and free motions x (size,) at any step of a sweep, and the system that they solve. slip: (Σn, d−1)
+    since the step before, as of `StepSystem.slip`. start: as of `full_solution`. Raises NotConverged."""
     μ = step_system.friction
     smooth = FullContact(step_system, lambda t: coulomb(t, 0.0), None)
     root = snes.solve(smooth, _bonded(step_system) if start is None else start, "full system", ITERATIONS, 1e-11)
@@ -104,7 +106,7 @@ def full_equilibrium(step_system: StepSystem, slip: Floats, start: Floats | None
 
 
 def _bonded(step_system: StepSystem) -> Floats:
-    """x of the linear problem in which all points are in contact, without friction."""
+    """Solution x of the linear problem in which all points are in contact, without friction."""
 
     def law(trial: Floats) -> LawValues:
         traction, derivative = np.zeros_like(trial), np.zeros((*trial.shape, trial.shape[1]))

@@ -76,7 +76,8 @@ def _taken_out(forces: Floats, nodes: Ints, axes: list[int]) -> Floats:
 
 
 def _resultant(group: str, directions: str, modes: Floats, forces: Floats) -> Reaction:
-    """Of nodal forces (N, d); modes (N, d, r): translations, then rotations about the point of the moment."""
+    """Reaction as resultant of nodal forces (N, d). modes (N, d, r): translations, then rotations about the point of
+    the moment."""
     total = np.einsum("ndr,nd->r", modes, forces)
     d = forces.shape[1]
     return Reaction(group, directions, total[:d], total[d:])

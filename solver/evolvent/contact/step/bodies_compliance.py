@@ -32,7 +32,7 @@ class BodiesCompliance:
 
     @cached_property
     def matrix(self) -> Floats:
-        """See `JumpCompliance.matrix`."""
+        """Matrix A (n·k, n·k) [mm/N], computed when it is first needed."""
         return self._summed(1)
 
     @cached_property
@@ -41,23 +41,23 @@ class BodiesCompliance:
 
     @property
     def nbytes(self) -> int:
-        """See `JumpCompliance.nbytes`; the bodies' own are shared."""
+        """Memory of the matrix [bytes]; the compliances of the bodies are shared."""
         return self.matrix.nbytes
 
     def times(self, force: Floats) -> Floats:
-        """See `JumpCompliance.times`."""
+        """Jumps A f (n·k,) [mm] under forces f (n·k,) [N]."""
         return np.asarray(sum(E @ (C @ (E.T @ force)) for E, C in zip(self.maps, self.parts)))
 
     def active(self, unknowns: Ints) -> ActiveCompliance:
-        """See `JumpCompliance.active`."""
+        """Compliance matrix between some unknowns (u,)."""
         return DenseCompliance(self.matrix, self.k).active(unknowns)
 
     def normal(self) -> DenseCompliance:
-        """See `JumpCompliance.normal`."""
+        """Compliance matrix (n, n) between normal components alone."""
         return self._normal
 
     def _summed(self, every: int) -> Floats:
-        """Among every first, second, ... of the jumps."""
+        """Compliance matrix between every first, second, ... of the jumps."""
         total: Floats = np.zeros((self.maps[0].shape[0] // every,) * 2)
         for E, C in zip(self.maps, self.parts):
             rows = E[::every]

@@ -75,8 +75,8 @@ class ContactResult:
     def of(
         contact: Contact, sides: tuple[Side, Side], paired: PairedSurfaces, traction: Floats, slip: Floats
     ) -> ContactResult:
-        """From local tractions (q, d) on the surface that carries the pressure, the first of `sides`, and its local
-        tangential slip (q, d−1) over the other one."""
+        """Result of a contact from local tractions (q, d) on the surface that carries the pressure, the first of
+        `sides`, and its local tangential slip (q, d−1) over the other one."""
         op, sign = paired.operator, 1.0 if sides[0] == contact.first else -1.0
         normals = op.common(np.eye(op.d)[:1].repeat(len(traction), axis=0))
         tangential = op.common(np.hstack([np.zeros((len(slip), 1)), slip]))

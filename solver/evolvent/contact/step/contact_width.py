@@ -73,7 +73,7 @@ def measure_width(paired: PairedSurfaces, pressure: Floats) -> ContactWidth:
 
 
 def _across(points: Floats, towards: Floats) -> Ints:
-    """Of a patch's points (p, d) those at which the direction (p, d) of the nearest edge is across the patch."""
+    """Points of a patch (p, d) at which the direction (p, d) of the nearest edge is across the patch."""
     extent = np.einsum("pi,ij,pj->p", towards, np.cov(points.T, bias=True), towards)
     return np.flatnonzero(extent <= ENDS * extent.min())
 
@@ -124,7 +124,7 @@ def _largest(surface: Surface, facets: Ints, directions: Floats) -> float:
 
 
 def warn_if_coarse(name: str, width: ContactWidth) -> None:
-    """Warns of a contact of less than two cells by a CoarseContactWarning, not of one that is open; name: which."""
+    """Warns by a CoarseContactWarning of a closed contact less than two cells wide. name: name of the contact."""
     if 0.0 < width.cells < ENOUGH:
         cells = math.floor(100.0 * width.cells) / 100.0  # 1.999 is less than 2
         warn_user(

@@ -1,4 +1,4 @@
-"""Which rigid motion of a body no contact resists, in words for a message."""
+"""Words of a message on a rigid motion of a body that no contact resists."""
 
 from __future__ import annotations
 

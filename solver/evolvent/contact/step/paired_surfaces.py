@@ -42,7 +42,7 @@ class SurfaceSupports:
 
     @staticmethod
     def of(body: Body, surface: Surface, rotation: Floats) -> SurfaceSupports:
-        """Of a surface of the body."""
+        """Supports of a body on one of its surfaces. rotation: (d, d), from the body's frame to the common one."""
         d = body.mesh.dimension
         held = np.zeros((len(body.mesh.points), d), dtype=bool)
         for support in body.supports:
@@ -59,7 +59,7 @@ class PairedSurfaces:
     searched: the surfaces on which the pairs were searched.
     pairing: the q pairs of points.
     operator: the contact operator on these pairs.
-    supports: those on each surface.
+    supports: supports of the bodies on each surface.
     """
 
     placed: SurfacePair
@@ -127,7 +127,7 @@ def displaced(placed: SurfacePair, positions: SurfacePositions) -> SurfacePair:
 
 
 def pair_overlaps(surfaces: SurfacePair, reach: float) -> Pairing:
-    """Where two surfaces overlap, also deeper than `reach` [mm]. Raises SearchError."""
+    """Pairs of points where two surfaces overlap, also deeper than `reach` [mm]. Raises SearchError."""
     try:
         return pair_surfaces(*surfaces, 0.0, max(reach, REACH * extent(surfaces[0])))
     except SearchError:  # so deep a search may find the far side of a thin body

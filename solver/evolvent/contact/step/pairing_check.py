@@ -159,9 +159,9 @@ def _allowed_motions(held: Bools) -> Ints:
 
 
 def _changes(paired: PairedSurfaces, moved: SurfacePair, pressed: Ints) -> tuple[Floats, Floats, Floats]:
-    """Of the pressed points, on the moved surfaces: change of the gap [mm] if the partner is searched along the new
-    normal, infinite where there is none; angle between old and new normal [rad]; distance of the partners along the
-    surface [mm]; (p,) each."""
+    """Changes at the pressed points on the moved surfaces, (p,) each: change of the gap [mm] if the partner is searched
+    along the new normal, infinite where there is none; angle between old and new normal [rad]; distance of the partners
+    along the surface [mm]."""
     pairing, op = paired.pairing, paired.operator
     before = _unit(op.shape[pressed] @ op.frames[:, 0])
     now = _normals(moved[0], pairing.facet1[pressed], pairing.xi1[pressed])

@@ -19,7 +19,8 @@ from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats, Ints
 
 SCATTER_LIMIT = 0.05
-"""Of the peak: above it peaks were found off by 3 to 75 %, below it, from two cells across on, by at most 3 %."""
+"""Scatter, over the peak pressure, above which peaks were off by 3 to 75 %; below it, from two cells across on, they
+were off by at most 3 %."""
 
 
 class ScatteredPressureWarning(UserWarning):
@@ -63,7 +64,7 @@ def parabola(points: Floats, weights: Floats, values: Floats) -> Floats:
 
 
 def warn_if_scattered(name: str, scatter: float) -> None:
-    """Warns of a peak beyond SCATTER_LIMIT by a ScatteredPressureWarning; name: which contact."""
+    """Warns by a ScatteredPressureWarning of a scatter beyond SCATTER_LIMIT. name: name of the contact."""
     if scatter > SCATTER_LIMIT:
         warn_user(
             f"{name}: wanted a largest pressure within {SCATTER_LIMIT:.0%} of a smooth course of the pressures around "

@@ -1,4 +1,4 @@
-"""What a step of a contact problem results in: the solution, and what the next step needs of it."""
+"""Results of a step of a contact problem: its solution, and the deformed surfaces that the next step needs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Solution:
     nodal_forces: per body, forces (m,) on the functionals of its contact surfaces [N].
     condensed: the condensed bodies; `condensed[i].assembled.body` is the body itself.
     step: the step that was solved.
-    responses: how each body answers contact forces in this step.
+    responses: response of each body to contact forces in this step.
     searches: number of searches for pairs: 1, or more if they were repeated on displaced surfaces.
     """
 

@@ -58,7 +58,7 @@ class StepSystem:
     search_at: where the surfaces are searched for pairs; by default as the bodies are placed, moved by the prescribed
         motions if these are long.
     as_placed: search as the bodies are placed even if the prescribed motions are long.
-    responses: how the bodies answer contact forces; by default as without inertia.
+    responses: responses of the bodies to contact forces; by default as without inertia.
 
     No solution is stored: one system can be solved any number of times. Raises InputError for a step that does not fit
     the problem, SearchError.
@@ -102,7 +102,7 @@ class StepSystem:
         return SurfaceSupports.of(body.assembled.body, body.surfaces[side[1]], self.placements[side[0]].rotation)
 
     def _after_prescribed_motions(self, sides: tuple[Side, Side], placed: SurfacePair) -> SurfacePositions | None:
-        """Where the prescribed motions alone take the surfaces, if that is further than FAR."""
+        """Positions of the surfaces after the prescribed motions alone, if these are longer than FAR; else None."""
         first, second = (self._prescribed_displacement(side) for side in sides)
         lengths = [np.linalg.norm(u, axis=1).max() / surface.size for u, surface in zip((first, second), placed)]
         far = max(lengths) > FAR and not self.as_placed
@@ -138,14 +138,15 @@ class StepSystem:
 
     @cached_property
     def compliance(self) -> JumpCompliance:
-        """Of all bodies in local jumps: gaps and stabilisers do not change it."""
+        """Compliance of all bodies in local jumps. Gaps and stabilisers do not change it."""
         whole = BodiesCompliance(self.maps, [response.compliance for response in self.responses], self.d)
         return DenseCompliance(whole.matrix, self.d) if self.friction.any() else whole
 
     def answering(
         self, step: Step, responses: Sequence[BodyResponse], motions: Sequence[RigidMotions], least_scale: float
     ) -> StepSystem:
-        """With the same pairs, in a step whose placements must be the same; least_scale: see `CondensedSystem`."""
+        """Contact system with the same pairs in another step, whose placements must be the same. least_scale: force [N]
+        with which residuals are compared at least."""
         other = copy(self)
         other.step, other.responses, other.motions, other.least_scale = step, responses, list(motions), least_scale
         other.__dict__.pop("compliance", None)  # cached
@@ -193,7 +194,7 @@ class StepSystem:
         return self.result(system, state, slip)
 
     def result(self, system: CondensedSystem, state: Equilibrium, slip: Floats) -> tuple[Solution, DeformedSurfaces]:
-        """Of an equilibrium of `system`; slip: (Σn, d−1) [mm], see `slip`."""
+        """Solution and deformed surfaces at an equilibrium of `system`. slip: (Σn, d−1) [mm], as of `slip`."""
         return self._solution(system, state, slip), self._deformed_surfaces(state)
 
     def slip(self, previous: DeformedSurfaces | None) -> Floats:
@@ -208,8 +209,8 @@ class StepSystem:
         return np.concatenate(result)
 
     def _frictional(self, system: CondensedSystem, μ: Floats, slip: Floats) -> Equilibrium:
-        """Starts from the frictionless equilibrium. If there is none (only friction carries the load), or Newton's
-        method fails from there, starts from the state in which all contact sticks."""
+        """Equilibrium with friction, from the frictionless one. If there is none (only friction carries the load), or
+        Newton's method fails from there, it starts from the state in which all contact sticks."""
         unknown = np.zeros((len(μ), self.d - 1))
         try:
             start = frictionless(normal_part(system))
@@ -231,7 +232,7 @@ class StepSystem:
             ) from failure
 
     def nodal_forces(self, state: Equilibrium) -> Floats:
-        """(Σn, d) [N] in local frames, with zeros where there is no friction."""
+        """Nodal contact forces (Σn, d) [N] in local frames. Tangential forces are zero where there is no friction."""
         return with_components(state.force, self.d)
 
     def _tractions(self, state: Equilibrium) -> list[Floats]:

@@ -27,13 +27,13 @@ from evolvent.contact.transient.settings import TransientSettings
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 
 SAFETY = 0.9
-"""Of the length at which the error would be the tolerance."""
+"""Factor on the step length at which the estimated error would equal the tolerance."""
 GROWTH, SHRINKAGE = 1.5, 0.1
 """Limits of the ratio of a length to the one before."""
 QUIET = 0.25
-"""Of the tolerance: errors below let steps grow. After GROWTH they are little more than half of it."""
+"""Error over the tolerance below which steps grow. After GROWTH the error is little more than half the tolerance."""
 SLIVER = 1e-6
-"""Of a step: by so much the last one may be longer than planned, so that rounding leaves no tiny one behind it."""
+"""Fraction of a time step by which the last one may be longer than planned, so that rounding leaves no tiny step."""
 
 
 @dataclass(frozen=True)
@@ -41,30 +41,31 @@ class StepLengths:
     """Rules for the lengths of time steps [s]."""
 
     longest: float
-    """The first one."""
+    """First and longest time step [s]."""
     shortest: float
-    """Taken whatever its error."""
+    """Shortest time step, accepted with any error [s]."""
     tolerance: float
-    """Largest error of a step that is longer."""
+    """Largest accepted error of a step that is longer than the shortest."""
 
     @staticmethod
     def of(settings: TransientSettings) -> StepLengths:
-        """Without a tolerance all steps are equal."""
+        """Rules for step lengths from the settings of a transient. Without a tolerance all steps are equal."""
         longest = settings.time_step
         if settings.tolerance is None:
             return StepLengths(longest, longest, np.inf)
         return StepLengths(longest, settings.least_step, settings.tolerance)
 
     def left(self, time: float, end: float) -> float:
-        """From a time to a wanted end; 0 where a sliver is left."""
+        """Remaining time until the end [s]; 0 where only a sliver remains."""
         return end - time if end - time > SLIVER * self.shortest else 0.0
 
     def planned(self, wanted: float) -> float:
-        """The length nearest to a wanted one."""
+        """Step length nearest to a wanted one, within the limits [s]."""
         return min(max(wanted, self.shortest), self.longest)
 
     def first(self, planned: float, left: float) -> float:
-        """The length to try, of a step planned so long where the run ends after `left`: the last two are equal."""
+        """Step length to try first [s]: the planned one, or, near the end of the run, half or all of the remaining time
+        `left`."""
         steps = np.ceil(left / planned - SLIVER)
         return float(left / max(steps, 1.0)) if steps <= 2.0 else planned
 
@@ -73,12 +74,12 @@ class StepLengths:
         return length > self.shortest
 
     def shorter(self, length: float, error: float | None) -> float:
-        """After a step with too large an error, or, with None, one that could not be solved."""
+        """Shorter length [s] after a step whose error is too large, or, with None, that could not be solved."""
         return max(length * (0.5 if error is None else self._ratio(error)), self.shortest)
 
     def after(self, length: float, error: float, planned: float | None) -> float:
-        """After a step that was accepted. planned: its length but for an end that was nearer; None where it had to be
-        tried again, and the next one is not to grow."""
+        """Length of the next step [s] after an accepted one. planned: length without regard to the end of the run; None
+        where the step had to be repeated, so that the next one does not grow."""
         if error > self.tolerance:
             return self.shortest
         if planned is None:
@@ -92,8 +93,8 @@ class StepLengths:
 
 
 def step_error(scheme: TimeScheme, after: Sequence[BodyMotion], energy: float) -> float:
-    """√(eᵀM e)/h over √2E, of a step at whose end the bodies are. energy: E, the largest so far. Prescribed motions
-    are exact, and count for nothing."""
+    """Error estimate √(eᵀM e)/h over √2E of a time step. after: the bodies at its end. energy: E, the largest so far.
+    Prescribed motions are exact and do not count."""
     square = 0.0
     for now in after:
         step, mass = now.response.step, now.response.body.system.mass

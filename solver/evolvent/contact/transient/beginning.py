@@ -1,4 +1,4 @@
-"""What a time step begins with, at time 0 and later, and problems that can have no beginning."""
+"""State from which a time step starts, at time 0 and later, and checks of problems and initial states."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from evolvent_meshes.input_checks import Words, refuse
 
 @dataclass(frozen=True)
 class Reached:
-    """The end of a time step, or the start."""
+    """State at the end of a time step, or at time 0."""
 
     time: float
-    """[s]."""
+    """Time [s]."""
     length: float
-    """Of the step that ended here [s]; 0 at the start."""
+    """Length of the step that ended here [s]; 0 at the start."""
     next_length: float
-    """That the next one is to have [s]."""
+    """Planned length of the next step [s]."""
     motions: tuple[BodyMotion, ...]
-    """Of each body."""
+    """Motion of each body."""
     deformed: DeformedSurfaces | None
-    """From which slip is measured; None: as placed."""
+    """Deformed surfaces from which slip is measured; None: as placed."""
     balance: EnergyBalance
-    """Since the start."""
+    """Energy balance since the start."""
 
 
 def begun(
@@ -66,7 +66,8 @@ def begun(
 
 
 def _velocity(body: MovingBody, index: int, start: InitialState) -> Floats:
-    """Of modes and rigid motions (m + r); `check` has seen that the free ones make it."""
+    """Initial velocity of modes and rigid motions (m + r) of a body. `check` ensures that free rigid motions alone give
+    it."""
     velocity = np.zeros(len(body.system.stiffness))
     if index in start.velocities:
         shapes = body.condensed.assembled.motions.shapes[:, :, body.free]
@@ -76,7 +77,7 @@ def _velocity(body: MovingBody, index: int, start: InitialState) -> Floats:
 
 
 def _accelerated(still: BodyMotion) -> BodyMotion:
-    """With the acceleration of its equation of motion; prescribed motions are at rest."""
+    """Motion at time 0 with the acceleration from the equation of motion. Prescribed motions are at rest."""
     response, state = still.response, still.state
     body, system = response.body, response.body.system
     m, free = body.count, body.count + body.free
@@ -91,7 +92,8 @@ def _accelerated(still: BodyMotion) -> BodyMotion:
 
 
 def check(problem: Problem, settings: TransientSettings, start: InitialState) -> None:
-    """Raises InputError for what a transient cannot have."""
+    """Checks a problem, settings and an initial state. Raises InputError for combinations that a transient does not
+    have."""
     if settings.conserving and (friction := [c.friction for c in problem.contacts if c.friction]):
         refuse(
             "transient, conserving", "contacts without friction", Words(f"friction = {friction[0]:g}"),

@@ -1,4 +1,4 @@
-"""One body of a transient at one time."""
+"""Motion of one body of a transient at one time."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class BodyMotion:
-    """A body with m modes, r rigid motions and k functionals."""
+    """Motion of a body with m modes, r rigid motions and k functionals at one time."""
 
     state: MotionState
-    """Of modes and rigid motions (m + r)."""
+    """Position, velocity and acceleration of modes and rigid motions (m + r)."""
     lag: Floats
-    """(m + r,) by which the acceleration of the state differs from z̈: α (a_{n+1} − a_n), in proportion to the step."""
+    """Difference (m + r,) between the acceleration of the state and z̈: α (a_{n+1} − a_n), in proportion to the
+    step."""
     response: MovingResponse
-    """What it answers to contact forces, with its loads and prescribed motions."""
+    """Response of the body to contact forces, with its loads and prescribed motions."""
     forces: Floats
-    """Contact forces on its functionals (k,)."""
+    """Contact forces on the functionals of the body (k,)."""
 
     def state_for(self, stretch: float) -> MotionState:
         """The state, for a step that is `stretch` times as long as the one before: its acceleration has the lag of such
@@ -33,12 +34,12 @@ class BodyMotion:
 
     @property
     def contact_force(self) -> Floats:
-        """Of the contact on modes and rigid motions (m + r,)."""
+        """Contact force on modes and rigid motions (m + r,)."""
         body = self.response.body
         return np.concatenate([body.functionals.T @ self.forces, body.condensed.motion_shapes.T @ self.forces])
 
     @property
     def driving(self) -> Floats:
-        """(h,) what moves the h prescribed rigid motions: their reactions and loads, M z̈ less the contact force."""
+        """Forces (h,) that drive the h prescribed rigid motions, reactions and loads: M z̈ less the contact force."""
         needed = self.response.body.system.mass @ (self.state.acceleration - self.lag) - self.contact_force
         return needed[self.response.held]

@@ -1,10 +1,10 @@
 """One time step that keeps the energy of contact without friction (time_schemes/midpoint_step.py).
 
-V(z) is what rest and contact store at given modes and rigid motions z, ½ fᵀC_r f + ∫ λ²/2γ less the flux in it; its
-gradient is the contact force. A step takes two contact systems: that of the midpoint, whose forces move the bodies, and
-that of the end, where z is held, from which V follows. Both are solved again until the stretch is such that the energy
-is that of the start, the work, and what damping took (time_schemes/stretch.py). All have the same pairs; where surfaces
-are searched anew V changes with them, and the stretch makes up for that, too.
+V(z) is the energy that rest and contact store at modes and rigid motions z, ½ fᵀC_r f + ∫ λ²/2γ less the flux in it;
+its gradient is the contact force. A step takes two contact systems: that of the midpoint, whose forces move the bodies,
+and that of the end, where z is held, from which V follows. Both are solved again until the stretch is such that the
+energy is that of the start, the work, and the damping losses (time_schemes/stretch.py). All have the same pairs; where
+surfaces are searched anew V changes with them, and the stretch makes up for that, too.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.input_checks import refuse
 
 ROUNDINGS = 100.0
-"""So many times what rounding makes of no gap is no contact force."""
+"""Multiple of the contact force by rounded gaps below which a contact force counts as zero."""
 UNRESISTED = 1e-10
-"""Largest jump by a rigid motion, over that by any, that counts as none."""
+"""Largest jump by a rigid motion, over that by any, below which contact does not resist the motion."""
 MIDPOINT = TimeScheme(1.0)
-"""The method without forces has its error."""
+"""Time scheme that has the error of the midpoint rule without forces."""
 
 
 class PlacedPairs:
@@ -52,7 +52,7 @@ class PlacedPairs:
         self._last: StepSystem | None = None
 
     def system(self, problem: Problem, condensed: tuple[CondensedBody, ...], step: Step) -> StepSystem:
-        """One with the pairs of `step`; its loads and motions are those of an earlier one."""
+        """Contact system with the pairs of `step`; its loads and motions are those of an earlier step."""
         last = self._last
         if last is None or last.problem is not problem or last.step.placements is not step.placements:
             last = self._last = StepSystem(problem, condensed, step)
@@ -89,65 +89,66 @@ class ContactEquilibrium:
     """Bodies in contact, at the midpoint of a step or at its end."""
 
     at: StepSystem
-    """The bodies."""
+    """Contact system of the bodies."""
     system: CondensedSystem
-    """Their contact."""
+    """Condensed equations of the contact."""
     state: Equilibrium
-    """Its equilibrium."""
+    """Equilibrium of the contact."""
 
     @classmethod
     def of(cls, at: StepSystem, pressed: Bools | None) -> ContactEquilibrium:
-        """pressed: (q,) points that are likely to press. Raises NotConverged."""
+        """Solves the contact of a system. pressed: (q,) points that are likely to press. Raises NotConverged."""
         system = at.system()
         return cls(at, system, frictionless(normal_part(system), pressed))
 
     @property
     def forces(self) -> list[Floats]:
-        """On the functionals of each body, (k,) [N]."""
+        """Contact forces on the functionals of each body, (k,) [N]."""
         force = self.at.nodal_forces(self.state).ravel()
         return [-(E.T @ force) for E in self.at.maps]
 
     @property
     def motions(self) -> list[Floats]:
-        """Rigid motions of each body (r,)."""
+        """Amplitudes of the rigid motions of each body (r,)."""
         return self.at.body_motions(self.state)
 
     @property
     def pressed(self) -> Bools:
-        """(q,) points that press."""
+        """Whether each point presses, (q,)."""
         return np.asarray(self.state.traction[:, 0] > 0.0)
 
     @property
     def stored(self) -> float:
-        """∫ λ²/2γ [N·mm; N in 2D]."""
+        """Energy ∫ λ²/2γ that Nitsche's method stores in the contacts [N·mm; N in 2D]."""
         operator, λ = self.system.operator, self.state.traction[:, 0]
         return stored_energy(operator.weights, λ, operator.stabiliser[:, 0])
 
     def solution(self, previous: DeformedSurfaces | None) -> tuple[Solution, DeformedSurfaces]:
-        """See `StepSystem.solve`."""
+        """Solution and deformed surfaces at the equilibrium. previous: the deformed surfaces from which the slip is
+        measured; None: as placed."""
         return self.at.result(self.system, self.state, self.at.slip(previous))
 
 
 @dataclass(frozen=True)
 class StepEnd:
-    """The end of a step with some stretch."""
+    """State at the end of a time step with some stretch."""
 
     time: float
-    """[s]."""
+    """Time [s]."""
     motions: tuple[BodyMotion, ...]
-    """Of the bodies."""
+    """Motion of each body."""
     contact: ContactEquilibrium
-    """Of the bodies there."""
+    """Contact of the bodies at the end."""
     iterations: int
-    """That it took, with those of the midpoint."""
+    """Newton iterations at the midpoint and at the end."""
     energy: Energy
-    """Of all bodies."""
+    """Energy of all bodies."""
     balance: EnergyBalance
-    """Since the start."""
+    """Energy balance since the start."""
 
     @property
     def excess(self) -> float:
-        """Energy too much, over the largest."""
+        """Energy in excess of the balance, over the largest energy."""
         return self.balance.left(self.energy.total) / self.balance.largest if self.balance.largest else 0.0
 
 
@@ -197,7 +198,7 @@ class StretchedSteps:
             try_stretches(excess, first.excess, slope)
 
     def _ended(self, system: StepSystem, stretch: float, unstretched: Sequence[Floats]) -> StepEnd:
-        """With one stretch."""
+        """State at the end of the step with one stretch."""
         steps = [
             MidpointStep(each.body.system, each.step.state, self.length, stretch, e)
             for each, e in zip(self.between, unstretched)
@@ -218,7 +219,7 @@ class StretchedSteps:
         return self._end(states, contact, damped, middle.state.iterations + contact.state.iterations)
 
     def _end(self, states: list[MotionState], contact: ContactEquilibrium, damped: float, iterations: int) -> StepEnd:
-        """With bodies in these states, after damping has taken so much."""
+        """State at the end of the step from the states of the bodies, after damping has dissipated `damped` [N·mm]."""
         motions = tuple(
             BodyMotion(state, np.zeros_like(state.position), response, forces)
             for state, response, forces in zip(states, self.after, contact.forces)
@@ -230,7 +231,8 @@ class StretchedSteps:
 
 
 def _halfway(index: int, before: BodyMotion, after: MovingResponse) -> MovingResponse:
-    """Under the mean of the loads at both ends. Raises InputError for prescribed motions that are not at rest."""
+    """Response of a body at the midpoint of a step, under the mean of the loads at both ends. Raises InputError for
+    prescribed motions that are not at rest."""
     held, position = after.held, before.state.position
     rest = after.prescribed[~np.isnan(after.prescribed)]
     if not np.array_equal(position[held], rest):
@@ -243,19 +245,19 @@ def _halfway(index: int, before: BodyMotion, after: MovingResponse) -> MovingRes
 
 
 def _loaded(response: MovingResponse) -> RigidMotions:
-    """Under the loads of a response."""
+    """Rigid motions of a body under the loads of a response."""
     load = np.full(len(response.prescribed), np.nan)
     load[response.body.free] = response.resultant
     return RigidMotions(response.body.condensed.assembled.motions.shapes, load, response.prescribed)
 
 
 def _held(body: MovingBody, motion: Floats) -> RigidMotions:
-    """Prescribed, with amplitudes (r,)."""
+    """Rigid motions of a body, all prescribed with amplitudes (r,)."""
     return RigidMotions(body.condensed.assembled.motions.shapes, np.full(len(motion), np.nan), motion)
 
 
 def _rounded_force(system: StepSystem) -> float:
-    """Contact force [N] that rounding makes of no gap: bodies that are held have no load to compare it with."""
+    """Contact force by the rounding of gaps [N]: held bodies have no load with which to compare it."""
     stiffness = sum(float(op.weights @ op.stabiliser[:, 0]) for op in system.operators)
     return float(np.finfo(float).eps) * stiffness * max(np.abs(op.points).max(initial=0.0) for op in system.operators)
 

@@ -1,4 +1,4 @@
-"""The energy of moving bodies in contact, the work that is done on them, and both against each other."""
+"""Energy of moving bodies in contact, the work done on them, and the balance of both."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 
 GROWTH = 0.02
-"""Of the largest energy so far: by how much it may seem to grow. Within a blow the sum of energies at the ends of time
-steps swings by 0.4 % with 20 steps a blow of a ball, 0.05 % with 40."""
+"""Apparent growth of the energy, over the largest so far, that is accepted. Within a blow the sum of energies at the
+ends of time steps swings by 0.4 % with 20 steps a blow of a ball, 0.05 % with 40."""
 
 KEPT = 1e-8
-"""Of the largest energy so far: by how much it may be off with a scheme that conserves it."""
+"""Accepted error of the energy, over the largest so far, with a scheme that conserves it."""
 
 
 @dataclass(frozen=True)
 class Energy:
-    """Of all bodies at one time [N·mm; N in 2D]."""
+    """Energy of all bodies at one time [N·mm; N in 2D]."""
 
     kinetic: float
-    """Of rigid motions and modes."""
+    """Kinetic energy of rigid motions and modes."""
     elastic: float
-    """Of modes and of the static rest."""
+    """Elastic energy of the modes and of the static response of the others."""
     contact: float
-    """What Nitsche's method stores in the contacts, ∫ λ²/2γ less the flux in the bodies' stiffness; it goes to zero
-    with the size of the cells."""
+    """Energy that Nitsche's method stores in the contacts, ∫ λ²/2γ less the flux in the bodies' stiffness; it goes to
+    zero with the size of the cells."""
 
     @property
     def total(self) -> float:
-        """Sum of all."""
+        """Sum of kinetic, elastic and contact energy."""
         return self.kinetic + self.elastic + self.contact
 
     @staticmethod
     def of(motions: Sequence[BodyMotion], contact: float) -> Energy:
-        """Of these bodies, with what is stored in their contacts."""
+        """Energy of bodies in motion. contact: energy stored in their contacts."""
         parts = [_motion_energy(motion) for motion in motions]
         kinetic, elastic = (sum(each) for each in zip(*parts))
         elastic += sum(_rest_energy(motion.response, motion.forces) for motion in motions)
@@ -48,30 +48,30 @@ class Energy:
 
 
 def _motion_energy(motion: BodyMotion) -> tuple[float, float]:
-    """Kinetic energy, and elastic energy of the modes, of one body."""
+    """Kinetic energy of one body, and elastic energy of its modes."""
     system, v, z = motion.response.body.system, motion.state.velocity, motion.state.position
     return 0.5 * float(v @ system.mass @ v), 0.5 * float(z @ (system.stiffness * z))
 
 
 def _rest_energy(response: MovingResponse, forces: Floats) -> float:
-    """Elastic energy of the static rest of one body under forces on its functionals (k,)."""
+    """Elastic energy of the static response of one body, without its modes, under forces on its functionals (k,)."""
     body = response.body
     loaded = body.load_response(response.factor, response.resultant)
     return float(0.5 * forces @ (body.rest @ forces) + forces @ loaded + 0.5 * _own(response))
 
 
 def contact_energy(contacts: Sequence[ContactResult]) -> float:
-    """∫ λ²/2γ of all contacts."""
+    """Energy ∫ λ²/2γ of all contacts."""
     return sum(stored_energy(c.weights, c.pressure, c.paired.operator.stabiliser[:, 0]) for c in contacts)
 
 
 def stored_energy(weights: Floats, pressure: Floats, stabiliser: Floats) -> float:
-    """∫ λ²/2γ over points (q,) with these weights, pressures λ and γ."""
+    """Energy ∫ λ²/2γ over points (q,) with these weights, pressures λ and stabilisers γ."""
     return 0.5 * float(np.sum(weights * pressure**2 / stabiliser))
 
 
 def load_work(before: BodyMotion, after: BodyMotion) -> float:
-    """Work of one body's loads over a step, by the trapezoidal rule: exact for loads that stay."""
+    """Work of one body's loads over a step, by the trapezoidal rule: exact for constant loads."""
     body, count = after.response.body, after.response.body.count
     work = 0.0
     moved = after.state.position - before.state.position
@@ -83,14 +83,14 @@ def load_work(before: BodyMotion, after: BodyMotion) -> float:
 
 
 def driving_work(before: BodyMotion, after: BodyMotion) -> float:
-    """Work over a step of what moves one body's prescribed motions, by the trapezoidal rule."""
+    """Work over a step of the forces that drive one body's prescribed motions, by the trapezoidal rule."""
     held = after.response.held
     moved = after.state.position[held] - before.state.position[held]
     return 0.5 * float((before.driving + after.driving) @ moved)
 
 
 def lag_work(before: BodyMotion, after: BodyMotion) -> float:
-    """What the time scheme adds to one body's energy over a step beyond the work, −½ Δzᵀ M Δlag.
+    """Energy that the time scheme adds to one body over a step beyond the work, −½ Δzᵀ M Δlag.
 
     Follows from the equation of motion at both ends and Δv = h ((1 − γ) a_n + γ a_{n+1}), γ = ½ − α. It is of third
     order where the motion is smooth; a motion that begins with a jolt has 8 % of its energy from it at ρ_∞ = 0.8.
@@ -110,37 +110,38 @@ class EnergyGrowth(ResultError):
 
 
 class EnergyNotKept(ResultError):
-    """The energy after a time step that is to conserve it is another one."""
+    """The energy after a step of a conserving time scheme differs from the balance."""
 
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """From the start to one time [N·mm; N in 2D]."""
+    """Energy balance from the start to one time [N·mm; N in 2D]."""
 
     first: float
     """Energy at the start."""
     largest: float
     """Largest energy so far."""
     work: float = 0.0
-    """Of all loads and of what moves the prescribed motions."""
+    """Work of all loads and of the forces that drive the prescribed motions."""
     added: float = 0.0
-    """By the time scheme, see `lag_work`; of one that conserves energy, what damping has taken, negative."""
+    """Energy added by the time scheme, see `lag_work`. With a conserving scheme it is the energy dissipated by damping,
+    negative."""
 
     def after(self, energy: float, work: float, added: float) -> EnergyBalance:
-        """After a step with this energy at its end, in which this work was done, and so much added by the scheme."""
+        """Balance after a step. energy: at its end. work, added: work done in it, and energy added by the scheme."""
         return EnergyBalance(self.first, max(self.largest, energy), self.work + work, self.added + added)
 
     def seen(self, energy: float) -> EnergyBalance:
-        """After a step that is not accepted, but shows what energy there will be: at a start from rest there is none to
-        compare errors with."""
+        """Balance with the largest energy of a step that is not accepted: at a start from rest there is no other energy
+        to compare errors with."""
         return replace(self, largest=max(self.largest, energy))
 
     def left(self, energy: float) -> float:
-        """Of an energy: what is beyond that of the start, the work, and what the scheme has added."""
+        """Excess of an energy over that of the start, the work and the energy added by the scheme."""
         return energy - self.first - self.work - self.added
 
     def certify(self, energy: float, time: float) -> None:
-        """Raises EnergyNotKept for an energy at a time [s] that is not all of it, of a scheme that conserves it."""
+        """Checks an energy at a time [s] of a conserving scheme. Raises EnergyNotKept where it is off the balance."""
         left = self.left(energy)
         if not abs(left) <= KEPT * self.largest:
             raise EnergyNotKept(
@@ -150,7 +151,8 @@ class EnergyBalance:
             )
 
     def refuse_growth(self, energy: float, time: float) -> None:
-        """Raises EnergyGrowth for an energy at a time [s] beyond all that. What the scheme has taken is not claimed."""
+        """Raises EnergyGrowth for an energy at a time [s] beyond the balance. Energy that the scheme has dissipated is
+        not counted."""
         gained = energy - self.first - self.work - max(self.added, 0.0)
         if gained > GROWTH * self.largest:
             raise EnergyGrowth(

@@ -1,4 +1,4 @@
-"""A moving body's answer to contact forces at one instant: its modes and rigid motions stay where they are."""
+"""Response of a moving body to contact forces at one instant, with fixed modes and rigid motions."""
 
 from __future__ import annotations
 
@@ -12,37 +12,38 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class HeldResponse:
-    """See `BodyResponse`; m modes, r rigid motions, none of them free. What answers is the static rest."""
+    """Response to contact forces of a body with m fixed modes and r fixed rigid motions: static, without the modes."""
 
     body: MovingBody
-    """The body."""
+    """Moving body."""
     modes: Floats
-    """Amplitudes q (m,)."""
+    """Amplitudes q of the modes (m,)."""
     factor: float
-    """Of its loads."""
+    """Factor on the loads of the body."""
     resultant: Floats
-    """(s,) of all loads on the rigid motions that are free in time [N, N·mm]."""
+    """Resultant (s,) of all loads on the rigid motions that are free in time [N, N·mm]."""
 
     @property
     def compliance(self) -> Floats:
-        """See `BodyResponse.compliance`."""
+        """Compliance (k, k) of the functionals without the modes [mm/N]."""
         return self.body.rest
 
     @property
     def displacement(self) -> Floats:
-        """See `BodyResponse.displacement`."""
+        """Values (k,) of the functionals without contact forces and rigid motions [mm]."""
         return self.body.load_response(self.factor, self.resultant) + self.body.functionals @ self.modes
 
     @property
     def resistance(self) -> Floats:
-        """See `BodyResponse.resistance`."""
+        """Empty matrix (0, 0), as no rigid motion is free."""
         return np.zeros((0, 0))
 
     @property
     def load(self) -> Floats:
-        """See `BodyResponse.load`."""
+        """Empty vector (0,), as no rigid motion is free."""
         return np.zeros(0)
 
     def field(self, forces: Floats, motion: Floats) -> Floats:
-        """See `BodyResponse.field`."""
+        """Displacement of the nodes (N, d) [mm] under forces on the functionals (k,) [N] at amplitudes of all rigid
+        motions (r,)."""
         return self.body.field(self.factor, self.resultant, forces, self.modes, motion)

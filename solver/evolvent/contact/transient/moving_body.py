@@ -1,4 +1,4 @@
-"""A condensed body with inertia: its modes at the contact functionals, and what the other modes add at once.
+"""A condensed body with inertia: its modes at the contact functionals, and the static response of the other modes.
 
 With F̂ all forces in the mean axes (fem/mean_axes.py), modes W of frequencies ω and q their amplitudes,
 
@@ -26,40 +26,40 @@ class MovingBody:
     """A condensed body with m modes, r rigid motions of which s are free, and k functionals."""
 
     condensed: CondensedBody
-    """The body without inertia."""
+    """Condensed body without inertia."""
     axes: MeanAxes
-    """Its mass in mean axes."""
+    """Mass of the body in mean axes."""
     modes: NaturalModes
-    """Its lowest modes."""
+    """Lowest natural modes of the body."""
     damping_ratio: float
-    """ζ of each mode."""
+    """Damping ratio ζ of each mode."""
 
     @staticmethod
     def of(condensed: CondensedBody, count: int, damping_ratio: float) -> MovingBody:
-        """With its lowest `count` modes; all where there are fewer. Raises CompileError, CacheError."""
+        """Moving body with its lowest `count` modes, or all where there are fewer. Raises CompileError, CacheError."""
         axes = MeanAxes.of(condensed.assembled)
         modes = natural_modes(condensed.stiffness, axes, condensed.factor.solve, count)
         return MovingBody(condensed, axes, modes, damping_ratio)
 
     @property
     def free(self) -> Ints:
-        """Which rigid motions are free, (s,)."""
+        """Indices (s,) of the free rigid motions."""
         return self.condensed.assembled.motions.free
 
     @property
     def count(self) -> int:
-        """m."""
+        """Number m of modes."""
         return len(self.modes.frequencies)
 
     @cached_property
     def functionals(self) -> Floats:
-        """Φ_P (k, m)."""
+        """Functionals Φ_P (k, m) of the mode shapes."""
         return self.condensed.functionals @ self.axes.shape(self.modes.shapes)
 
     @cached_property
     def system(self) -> LinearSystem:
-        """Of modes and rigid motions, (m + r) coordinates. Rigid motions that are prescribed push the modes by their
-        acceleration."""
+        """Mass, damping and stiffness of modes and rigid motions, (m + r) coordinates. Prescribed rigid motions act on
+        the modes by their acceleration."""
         m, ω = self.count, self.modes.frequencies
         mass = np.eye(m + len(self.axes.rigid_mass))
         mass[m:, m:] = self.axes.rigid_mass
@@ -71,7 +71,7 @@ class MovingBody:
 
     @cached_property
     def rest(self) -> Floats:
-        """C_r (k, k), the static compliance in mean axes without that of the modes [mm/N]."""
+        """Static compliance C_r (k, k) in mean axes without that of the modes [mm/N]."""
         H, bent = self.condensed.motion_shapes[:, self.free], self._carried_response
         inertial = bent @ H.T
         resting = H @ (self.axes.carried.T @ self._carried) @ H.T
@@ -79,12 +79,12 @@ class MovingBody:
         return static - (self.functionals / self.modes.frequencies**2) @ self.functionals.T
 
     def modal_load(self, load: float, resultant: Floats) -> Floats:
-        """(m,) of loads with a factor whose resultant on the free rigid motions is (s,)."""
+        """Forces (m,) on the modes by loads with a factor. resultant: (s,) of the loads on the free rigid motions."""
         force = load * self.condensed.load - self.axes.carried @ resultant
         return np.asarray(self.modes.shapes.T @ force)
 
     def load_response(self, load: float, resultant: Floats) -> Floats:
-        """Ψ K⁻¹ of these loads without what the modes answer, (k,) [mm]."""
+        """Functionals Ψ K⁻¹ of the loads without the response of the modes, (k,) [mm]."""
         H = self.condensed.motion_shapes[:, self.free]
         loaded = load * (self.condensed.load_response - H @ (self._carried.T @ self.condensed.load))
         inertial = self._carried_response @ resultant - H @ (self.axes.carried.T @ (self._carried @ resultant))
@@ -92,7 +92,7 @@ class MovingBody:
         return np.asarray(loaded - inertial - modal)
 
     def load_compliance(self, load: float, resultant: Floats) -> float:
-        """Twice the elastic energy of these loads in the static rest [N·mm]."""
+        """Twice the elastic energy of the loads in the static response without the modes [N·mm]."""
         force = load * self.condensed.load - self.axes.carried @ resultant
         moved = load * self._loaded - self._carried @ resultant
         modal = self.modal_load(load, resultant) / self.modes.frequencies
@@ -118,7 +118,7 @@ class MovingBody:
         return self.axes.shape(w).reshape(shapes.shape[:2]) + shapes @ motion
 
     def _deformation(self, load: float, resultant: Floats, forces: Floats, modes: Floats) -> Floats:
-        """w (n,) [mm] on the free degrees of freedom."""
+        """Displacement w (n,) [mm] of the free degrees of freedom in mean axes."""
         condensed = self.condensed
         contact = (condensed.functionals.T @ forces)[condensed.assembled.free]
         carried = self.axes.carried @ (resultant + condensed.motion_shapes[:, self.free].T @ forces)
@@ -129,15 +129,15 @@ class MovingBody:
 
     @cached_property
     def _loaded(self) -> Floats:
-        """K⁻¹ of the loads (n,)."""
+        """Displacements K⁻¹ of the loads (n,)."""
         return np.asarray(self.condensed.factor.solve(self.condensed.load))
 
     @cached_property
     def _carried(self) -> Floats:
-        """K⁻¹ M R m⁻¹ (n, s)."""
+        """Displacements K⁻¹ M R m⁻¹ (n, s) by the inertia forces of unit resultants."""
         return np.asarray(self.condensed.factor.solve(self.axes.carried))
 
     @cached_property
     def _carried_response(self) -> Floats:
-        """P of it, (k, s)."""
+        """Functionals P K⁻¹ M R m⁻¹ (k, s) under the inertia forces of unit resultants."""
         return np.asarray(self.condensed.functionals[:, self.condensed.assembled.free] @ self._carried)

@@ -1,4 +1,4 @@
-"""A moving body's answer to contact forces in one time step."""
+"""Response of a moving body to contact forces in one time step."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from evolvent_meshes.errors import InputError
 
 @dataclass(frozen=True)
 class MovingResponse:
-    """See `BodyResponse`; m modes, r rigid motions, s of them free."""
+    """Response to contact forces in a time step of a body with m modes and r rigid motions, s of them free."""
 
     body: MovingBody
-    """The body."""
+    """Moving body."""
     step: StepEquations
-    """From its state at the begin, on modes and rigid motions (m + r)."""
+    """Equations of the time step of modes and rigid motions (m + r), from the state at its beginning."""
     factor: float
-    """Of its loads at the end."""
+    """Factor on the loads of the body at the end."""
     resultant: Floats
-    """(s,) of all loads on the free rigid motions at the end [N, N·mm]."""
+    """Resultant (s,) of all loads on the free rigid motions at the end [N, N·mm]."""
     prescribed: Floats
-    """(r,) rigid motions at the end, NaN where they are free [mm, rad]."""
+    """Amplitudes (r,) of the rigid motions at the end, NaN where they are free [mm, rad]."""
 
     @staticmethod
     def of(body: MovingBody, index: int, step: Step, time_step: StepEquations) -> MovingResponse:
-        """Of body `index` under the loads and prescribed motions of a step.
+        """Response of body `index` under the loads and prescribed motions of a step.
 
         Raises InputError for a step that prescribes what is loaded, or loads what is prescribed.
         """
@@ -46,46 +46,48 @@ class MovingResponse:
 
     @cached_property
     def compliance(self) -> Floats:
-        """See `BodyResponse.compliance`."""
+        """Compliance (k, k) of the functionals in the time step [mm/N]."""
         Φ = self.body.functionals
         return self.body.rest + (Φ / self._modal) @ Φ.T
 
     @cached_property
     def displacement(self) -> Floats:
-        """See `BodyResponse.displacement`."""
+        """Values (k,) of the functionals without contact forces and rigid motions [mm]."""
         rest = self.body.load_response(self.factor, self.resultant)
         return rest + self.body.functionals @ (self._pushed / self._modal)
 
     @property
     def resistance(self) -> Floats:
-        """See `BodyResponse.resistance`."""
+        """Force (s, s) on the free rigid motions by unit amplitudes of them, from inertia and damping [N/mm, N,
+        N·mm]."""
         return self.step.matrix[np.ix_(self._free, self._free)]
 
     @property
     def load(self) -> Floats:
-        """See `BodyResponse.load`."""
+        """Force (s,) on the free rigid motions beside the loads of the step, from inertia and damping [N, N·mm]."""
         return self.step.known[self._free] - self.step.matrix[np.ix_(self._free, self.held)] @ self._held_at
 
     def state(self, forces: Floats, motion: Floats) -> MotionState:
-        """The body's state at the end, under forces on the functionals (k,) at rigid motions (r,)."""
+        """State of the body at the end, under forces on the functionals (k,) at rigid motions (r,)."""
         return self.step.after(np.concatenate([self.modes(forces), motion]))
 
     def modes(self, forces: Floats) -> Floats:
-        """Amplitudes q (m,) at the end, under forces on the functionals (k,)."""
+        """Amplitudes q (m,) of the modes at the end, under forces on the functionals (k,)."""
         return (self._pushed + self.body.functionals.T @ forces) / self._modal
 
     def field(self, forces: Floats, motion: Floats) -> Floats:
-        """See `BodyResponse.field`: static under all forces and the inertia forces of the modes and rigid motions."""
+        """Displacement of the nodes (N, d) [mm] under forces on the functionals (k,) [N] at rigid motions (r,): static
+        under all forces and the inertia forces of the modes and rigid motions."""
         return self.body.field(self.factor, self.resultant, forces, self.modes(forces), motion)
 
     @property
     def _modal(self) -> Floats:
-        """Diagonal of the matrix among the modes (m,)."""
+        """Diagonal of the step's matrix for the modes (m,)."""
         return np.diag(self.step.matrix)[: self.body.count]
 
     @cached_property
     def _pushed(self) -> Floats:
-        """(m,) forces on the modes but for those of the contact."""
+        """Forces (m,) on the modes without those of the contact."""
         m = self.body.count
         inertia = self.step.known[:m] - self.step.matrix[:m, self.held] @ self._held_at
         return self.body.modal_load(self.factor, self.resultant) + inertia
@@ -96,7 +98,7 @@ class MovingResponse:
 
     @property
     def held(self) -> Ints:
-        """The prescribed ones among modes and rigid motions."""
+        """Indices of the prescribed coordinates among modes and rigid motions."""
         return self.body.count + np.flatnonzero(~np.isnan(self.prescribed))
 
     @property

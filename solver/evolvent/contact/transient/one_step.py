@@ -1,4 +1,4 @@
-"""One time step of a given length."""
+"""Solution of one time step of a given length."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class SolvedStep:
-    """What a time step results in."""
+    """Solution of a time step."""
 
     reached: Reached
-    """Its end."""
+    """State at the end of the step."""
     solution: Solution
-    """Contacts, forces and motions there."""
+    """Contacts, forces and motions at the end."""
     energy: Energy
-    """Of all bodies there."""
+    """Energy of all bodies at the end."""
     error: float
-    """Estimated, see adaptive_steps.py."""
+    """Estimated error, see adaptive_steps.py."""
     systems: int
-    """Contact systems that were solved."""
+    """Number of contact systems that were solved."""
 
 
 def solve_step(

@@ -32,16 +32,16 @@ from evolvent_meshes.input_checks import Words, refuse
 
 FORMAT = "evolvent transient 1"
 KEPT = "modes", "damping_ratio", "spectral_radius", "conserving"
-"""Settings with which a transient has to go on; lengths of time steps may change."""
+"""Settings that must be equal for a transient to be resumed; lengths of time steps may change."""
 SAME = 1e-6
-"""Largest difference of a projection of a mode, over the largest one of its body."""
+"""Largest accepted difference of a projection of a mode, over the largest projection of its body."""
 
 
 def write_state(
     path: Path, problem: Problem, settings: TransientSettings, bodies: tuple[MovingBody, ...], reached: Reached
 ) -> Path:
-    """Writes what has been reached; returns the path. Replaces a state of the same problem and settings, and no other
-    file. Raises InputError, WriteError."""
+    """Writes the state of a transient; returns the path. Replaces a state of the same problem and settings, and no
+    other file. Raises InputError, WriteError."""
     parts = fingerprints(problem, settings)
     if path.exists():
         _require_same(path, _read(path, "name another file: others are not overwritten"), parts)
@@ -61,7 +61,7 @@ def write_state(
 
 
 def read_state(path: Path, problem: Problem, settings: TransientSettings, bodies: tuple[MovingBody, ...]) -> Reached:
-    """What was written. Raises InputError for a file that is no state, or that of another problem."""
+    """State that `write_state` wrote. Raises InputError for a file that is no state, or that of another problem."""
     arrays = _read(path, "give the path that Transient.save returned")
     _require_same(path, arrays, fingerprints(problem, settings))
     scheme = TimeScheme(settings.spectral_radius)
@@ -96,7 +96,7 @@ def _motion(path: Path, arrays: Mapping[str, Any], index: int, body: MovingBody,
 
 
 def _projections(body: MovingBody) -> Floats:
-    """Of each mode on one fixed field (m,)."""
+    """Projection of each mode on one fixed field (m,)."""
     shapes = body.modes.shapes
     return np.asarray(np.cos(np.arange(len(shapes))) @ shapes)
 

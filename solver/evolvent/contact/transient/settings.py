@@ -1,4 +1,4 @@
-"""What a transient begins with, and the settings of its method."""
+"""Initial state of a transient, and the settings of its method."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from evolvent.contact.problem.definition import Step
 from evolvent_meshes.input_checks import Words, instance, is_index, number, refuse, vector
 
 MODES = 20
-"""Natural modes of each body, unless others are asked for."""
+"""Default number of natural modes of each body."""
 DAMPED = 0.8
-"""ρ_∞ by default: motions too fast for the step lose a fifth of their amplitude in each."""
+"""Default spectral radius ρ_∞: motions too fast for the step lose a fifth of their amplitude in each."""
 
 SHORTEST = 1e-3
-"""Of the longest time step: the shortest one by default."""
+"""Default shortest time step, over the longest one."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class TransientSettings:
     """The method of a transient.
 
     time_step: [s]; with a tolerance the first and the longest one.
-    modes: natural modes of each body that have inertia; the others answer at once.
+    modes: natural modes of each body that have inertia; the others respond statically.
     damping_ratio: of each mode, over the critical one.
     spectral_radius: ρ_∞ of the method, from 0 (motions too fast for the step are gone in one) to 1 (they stay for ever,
         and blows may add energy).

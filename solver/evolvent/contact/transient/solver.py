@@ -30,7 +30,7 @@ from evolvent_meshes.errors import ResultError
 from evolvent_meshes.input_checks import instance, number, refuse
 
 Loading = Step | Callable[[float], Step] | None
-"""Loads and prescribed motions: of a time [s], or constant ones, by default the full load."""
+"""Loads and prescribed motions as a function of time [s], or constant; None: the full load."""
 
 
 class CoarseTimeStepWarning(UserWarning):
@@ -91,7 +91,7 @@ class Transient:
 
     @property
     def time(self) -> float:
-        """[s] that have been solved."""
+        """Time until which the transient has been solved [s]."""
         return 0.0 if self._reached is None else self._reached.time
 
     def solve(self, step: Loading = None) -> Moment:
@@ -120,7 +120,7 @@ class Transient:
             yield self._solve(step, left)
 
     def save(self, path: Path | str) -> Path:
-        """Keeps what has been reached in a file, from which `resume` goes on; returns its path.
+        """Saves the state of the transient in a file, from which `resume` continues; returns its path.
 
         Replaces an earlier state of this transient, and no other file. Raises InputError, WriteError.
         """
@@ -188,7 +188,8 @@ class Transient:
         return step
 
     def _warn_if_coarse(self, solved: SolvedStep) -> None:
-        """Of the first error beyond the tolerance, and of those that are twice as large."""
+        """Warns of the first error beyond the tolerance, and of errors that are twice as large as the last one warned
+        of."""
         if solved.error > max(self._lengths.tolerance, 2.0 * self._warned):
             self._warned = solved.error
             warn_user(

@@ -26,7 +26,7 @@ SAME_NODE = 1e-7
 
 @dataclass(frozen=True)
 class CoarseBody:
-    """A body whose mesh does not resolve its contact, and into what its cells near the contact are split.
+    """A body whose mesh does not resolve its contact, and how its cells near the contact are split.
 
     mesh: second-order quadrilaterals or hexahedra.
     material: of the body.
@@ -44,7 +44,7 @@ class CoarseBody:
 
     @property
     def facets(self) -> Ints:
-        """(m, k) mesh nodes of the coarse contact surface's facets."""
+        """Mesh nodes (m, k) of the coarse contact surface's facets."""
         return self.mesh.facets[self.group]
 
     @cached_property
@@ -54,7 +54,7 @@ class CoarseBody:
 
     @cached_property
     def fine(self) -> FineSurface:
-        """Its contact surface, split."""
+        """Contact surface of the body with its cells split."""
         behind = np.unique(adjacent_cells(self.mesh.cells, self.facets, len(self.mesh.points)))
         return FineSurface.of(self, cut_out(self.mesh, behind))
 
@@ -87,7 +87,7 @@ class FineSurface:
 
     @staticmethod
     def of(body: CoarseBody, layer: Patch) -> FineSurface:
-        """From the cells behind the surface."""
+        """Fine surface from the cells behind the coarse one."""
         fine = body.split_patch(layer)
         surface = surface_of(fine.mesh, body.group)
         place = np.full(len(body.mesh.points), -1)

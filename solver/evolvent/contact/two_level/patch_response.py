@@ -1,8 +1,8 @@
-"""What fine cells change in the response of a contact surface near a load: a patch of the body, condensed twice.
+"""Correction of the response of a contact surface near a load by fine cells: a patch of the body, condensed twice.
 
 The patch is clamped where it is cut out of the body. Its compliance with fine cells, less that with coarse cells,
-transferred to the fine nodes, falls off with the distance from the load like the error of the coarse cells. What the
-functionals of Nitsche's method change falls off within the fine cells about the load, a smaller patch.
+transferred to the fine nodes, falls off with the distance from the load like the error of the coarse cells. The
+correction of the functionals of Nitsche's method falls off within the fine cells about the load, a smaller patch.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.patches import CUT, Patch, cells_near, cut_out
 
 FEW = 0.15
-"""Of a patch's nodes: where forces act on fewer, a solution for each costs less than eliminating the patch's inside."""
+"""Fraction of a patch's nodes: where forces act on fewer, a solution for each costs less than eliminating the patch's
+inside."""
 Places = Callable[[Floats], Bools]
-"""Which of some points (n, d) [mm] are meant, (n,)."""
+"""Function that selects some of the points (n, d) [mm], (n,) bool."""
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,8 @@ def patch_response(
 def _with_flux(
     plain: Floats, fine: _Condensable, part: Patch, inner: _Condensable, loaded: Bools, safety: float
 ) -> Floats:
-    """The change with what Nitsche's functionals change. inner: the part of the fine patch in which that is
-    followed."""
+    """Correction of a patch with that of Nitsche's functionals. inner: the part of the fine patch in which the latter
+    is followed."""
     change = plain.copy()
     number = np.full(len(fine.mesh.points), -1)
     number[fine.surface.nodes] = np.arange(len(fine.surface.nodes))
@@ -115,7 +116,7 @@ class _Condensable:
         return _Condensable(mesh, body.material, surface_of(mesh, body.group), assembled.stiffness, assembled.free)
 
     def within(self, part: Patch, group: str) -> _Condensable:
-        """A part of it, held where that is cut out. All cells of a node that is free there are in the part."""
+        """Part of the patch, held where it is cut out. All cells of a node that is free there are in the part."""
         d = self.mesh.dimension
         dofs = (d * part.nodes[:, None] + np.arange(d)).ravel()
         is_free = np.isin(dofs, self.free)

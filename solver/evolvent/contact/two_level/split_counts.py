@@ -50,12 +50,12 @@ def _next(mesh: MeshData, cell: Ints, side: Ints) -> tuple[Ints, Ints]:
 
 
 def _axis_of_side(shape: str) -> Ints:
-    """(sides,) reference axis across each side of a cell."""
+    """Reference axis (sides,) across each side of a cell."""
     centres = node_positions(shape, 2)[[face[-1] for face in facet_nodes(shape, 2)]]
     return np.argmax(centres != 1, axis=1)
 
 
 def _opposite(shape: str) -> Ints:
-    """(sides,) the side opposite each."""
+    """Opposite side (sides,) of each side."""
     centres = node_positions(shape, 2)[[face[-1] for face in facet_nodes(shape, 2)]]
     return np.array([int(np.argmax((centres == 2 - centre).all(axis=1))) for centre in centres])

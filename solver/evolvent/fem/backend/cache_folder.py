@@ -20,7 +20,7 @@ from pathlib import Path
 from evolvent_meshes.errors import EvolventError
 
 ROOT = 0
-"""The user who may write everywhere anyway."""
+"""User number of root, who may write everywhere."""
 OTHERS_WRITE, OTHERS_SEARCH = stat.S_IWGRP | stat.S_IWOTH, stat.S_IXGRP | stat.S_IXOTH
 
 
@@ -92,7 +92,7 @@ def _below(folder: Path) -> Iterator[Path]:
 
 
 def _foreign(facts: os.stat_result, writable: int, owners: frozenset[int] = frozenset()) -> str:
-    """What is wrong with a file or folder: its owner, or that others may write to it; empty where nothing is.
+    """Reason why a file or folder is not trusted: its owner, or other users who may write to it; empty where it is.
 
     owners: who may own it beside this user and root.
     """
@@ -103,8 +103,8 @@ def _foreign(facts: os.stat_result, writable: int, owners: frozenset[int] = froz
 
 @cache
 def _unmapped_owners() -> frozenset[int]:
-    """Who seems to own root's folders in a container that has no name for root: in a user namespace all users without a
-    name have the same number."""
+    """Apparent owner of root's folders in a container that has no name for root: in a user namespace all users without
+    a name have the same number."""
     try:
         everybody = Path("/proc/self/uid_map").read_text().split() == ["0", "0", str(2**32 - 1)]
         return frozenset() if everybody else frozenset({int(Path("/proc/sys/kernel/overflowuid").read_text())})

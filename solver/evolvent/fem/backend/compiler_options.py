@@ -13,7 +13,7 @@ VARIABLES = ("CFLAGS", "CPPFLAGS", "LDFLAGS")
 """Environment variables whose words stand in every command of the compiler."""
 PROGRAM = "int evolvent;\n"
 PATIENCE = 60.0
-"""Time for the smallest program [s]."""
+"""Longest time to compile the smallest program [s]."""
 
 
 def refused_options() -> str:
@@ -31,7 +31,7 @@ def refused_options() -> str:
 
 
 def _complaint(compiler: list[str], options: list[str]) -> str:
-    """What the compiler says to these options: its first line that is no warning; empty where it accepts them."""
+    """First line of the compiler's output on these options that is no warning; empty where it accepts them."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "program.so"
         command = [*compiler, "-x", "c", "-", "-shared", "-fPIC", "-o", str(out), *options]

@@ -62,7 +62,8 @@ def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
 
 
 def gmsh_permutation(shape: str, count: int) -> Ints:
-    """perm (count,): cells[:, perm] are in the node order of basix where cells of `count` nodes are in that of gmsh."""
+    """Permutation perm (count,): cells[:, perm] are in the node order of basix where cells of `count` nodes are in that
+    of gmsh."""
     return np.asarray(cpp.io.perm_gmsh(getattr(cpp.mesh.CellType, shape), count), dtype=np.int64)
 
 
@@ -77,7 +78,7 @@ def vector_space(mesh: Mesh, order: int) -> Space:
 
 
 def displacement_space(mesh: MeshData) -> tuple[Mesh, Space, Ints]:
-    """dolfinx' mesh and space of the displacements of a body with N nodes, and where each of the degrees of freedom
+    """Mesh of dolfinx and space of the displacements of a body with N nodes, and where each of the degrees of freedom
     d·node + component is among those of the space, (N·d,)."""
     made = create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)
     space, d = vector_space(made, mesh.order), mesh.dimension

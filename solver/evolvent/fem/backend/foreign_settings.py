@@ -1,5 +1,5 @@
-"""What dolfinx, FFCx and distutils would take from the user's environment, and must not: options files, words of the
-command line, a home directory.
+"""Keeps dolfinx, FFCx and distutils from the user's environment: options files, words of the command line, a home
+directory.
 
 An options file in ~/.config or in the current folder belongs to other programs, and one that cannot be read, as in the
 home of another user, would end a run.
@@ -19,9 +19,9 @@ from typing import Any
 READERS = ("dolfinx.jit", "ffcx.parameters", "ffcx.options")
 """Modules that read options files: those of FFCx until 2022, and since."""
 Reader = tuple[Any, str, Callable[..., Any]]
-"""A module or class, its function that reads files, and what takes its place."""
+"""Module or class, its function that reads files, and the replacement of the function."""
 FUNCTIONS = ("_load_parameters", "_load_options")
-"""Their functions that do so: without arguments, options of the home directory and of the current folder."""
+"""Functions of dolfinx and FFCx that read options files, from the home directory and the current folder."""
 
 
 @contextmanager

@@ -126,7 +126,7 @@ class _Elimination:
     threads: Threads
 
     def subtract(self, tree: SeparatorTree, outer: Ints, oo: PackedTriangle) -> None:
-        """oo −= A_oi A_ii⁻¹ A_io, where i are the rows of the tree and o the rows `outer`."""
+        """Subtracts from oo the product A_oi A_ii⁻¹ A_io, where i are the rows of the tree and o the rows `outer`."""
         with self.stack.released_at_exit():
             front = _Front.of(self.matrix, slice(tree.separator, tree.end), outer, oo, self.stack)
             for child in (tree,) if tree.is_leaf else tree.children:
@@ -147,14 +147,14 @@ class _Elimination:
                 front.add(update, places)
 
     def _coupled_columns(self, tree: SeparatorTree) -> Bools:
-        """(n + m,) the columns in which the rows of a tree have an entry."""
+        """Columns (n + m,) in which the rows of a tree have an entry."""
         coupled = np.zeros(self.matrix.shape[1], dtype=bool)
         ends = self.matrix.indptr[tree.begin], self.matrix.indptr[tree.end]
         coupled[self.matrix.indices[slice(*ends)]] = True
         return coupled
 
     def _leaf_update(self, leaf: SeparatorTree, outer: Ints) -> Floats:
-        """−A_oi A_ii⁻¹ A_io (upper triangle), where i are the rows of the leaf and o the rows `outer`."""
+        """Update −A_oi A_ii⁻¹ A_io (upper triangle), where i are the rows of the leaf and o the rows `outer`."""
         if not len(outer):
             return np.zeros((0, 0))
         rows = self.matrix[leaf.begin : leaf.end]
@@ -199,7 +199,7 @@ class _Front:
         update.add_trailing(self.oo, outside - count)
 
     def eliminate(self) -> None:
-        """oo −= soᵀ ss⁻¹ so; overwrites ss and so. Raises NotPositiveDefinite.
+        """Eliminates a front: oo −= soᵀ ss⁻¹ so; overwrites ss and so. Raises NotPositiveDefinite.
 
         LAPACK works on the transposed arrays, which are in Fortran order, so that nothing is copied.
         """

@@ -51,7 +51,7 @@ class PackedTriangle:
         return range(0, self.size, HEIGHT)
 
     def subtract_product(self, half: Floats) -> None:
-        """self −= halfᵀ half for half (k × size)."""
+        """Subtracts a product: self −= halfᵀ half for half (k × size)."""
         for start, strip in zip(self.starts, self.strips):
             strip -= half[:, start : start + len(strip)].T @ half[:, start:]
 
@@ -92,7 +92,7 @@ def _runs(places: Ints, first: int) -> list[RowRun]:
 
 
 def _add(target: Floats, left: int, added: Floats, origin: int, columns: list[RowRun]) -> None:
-    """target[:, columns] += added; `left` and `origin` are the numbers of their first columns.
+    """Adds columns, target[:, columns] += added; `left` and `origin` are the numbers of their first columns.
 
     Runs are long where nodes are numbered along the mesh.
     """

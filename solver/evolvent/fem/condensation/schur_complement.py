@@ -138,7 +138,7 @@ class SectorCondensation:
 
 @dataclass(frozen=True)
 class SectorSystem:
-    """[K Pᵀ; P 0] of a sector in elimination order: interior rows, cut faces, functionals.
+    """System [K Pᵀ; P 0] of a sector in elimination order: interior rows, cut faces, functionals.
 
     matrix: the interior rows are eliminated, the others retained.
     cut: 2c, degrees of freedom of both cut faces.
@@ -234,7 +234,7 @@ def _ordered(
     stiffness: sp.spmatrix, functionals: sp.spmatrix, interior: Ints, cut: Ints, corner: sp.coo_matrix,
     settings: DissectionSettings, graph: sp.spmatrix | None,
 ) -> OrderedMatrix:
-    """[K Pᵀ; P 0]: rows of the interior to eliminate, cut faces and functionals retained."""
+    """System [K Pᵀ; P 0]: rows of the interior to eliminate, cut faces and functionals retained."""
     size, count = stiffness.shape[0], functionals.shape[0]
     columns = np.concatenate([interior, cut, size + np.arange(count)])
     rows = _restricted(_beside(stiffness.tocsr(), functionals.T.tocsr()), interior, columns)
@@ -257,7 +257,7 @@ def _restricted(matrix: sp.spmatrix, rows: Ints, columns: Ints) -> sp.csr_matrix
 
 
 def _beside(left: sp.csr_matrix, right: sp.csr_matrix) -> sp.csr_matrix:
-    """[left right] as the sum of two wide matrices; SciPy's `hstack` converts both to coordinate lists."""
+    """Matrix [left right] as the sum of two wide matrices; SciPy's `hstack` converts both to coordinate lists."""
     shape = left.shape[0], left.shape[1] + right.shape[1]
     moved = right.indices + right.indices.dtype.type(left.shape[1])
     wide = sp.csr_matrix((left.data, left.indices, left.indptr), shape=shape)

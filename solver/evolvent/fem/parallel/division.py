@@ -17,7 +17,7 @@ T = TypeVar("T")
 def divided(costs: Sequence[float], busy: Sequence[float]) -> list[list[int]]:
     """The tasks of each rank, the dearest first: each goes to the rank that has least to do.
 
-    costs: of each task. busy: cost of what each rank does besides.
+    costs: of each task. busy: cost of the other work of each rank.
     """
     load = np.array(busy, dtype=float)
     own: list[list[int]] = [[] for _ in busy]
@@ -29,7 +29,7 @@ def divided(costs: Sequence[float], busy: Sequence[float]) -> list[list[int]]:
 
 
 def exchanged(comm: MPI.Comm, own: Mapping[K, T]) -> dict[K, T]:
-    """What all ranks have, by different keys, on all ranks; see `shared`. Collective. Raises OSError."""
+    """Union of the mappings of all ranks, on all ranks; their keys differ. Collective. Raises OSError."""
     everything: dict[K, T] = {}
     for root in range(comm.size):
         everything |= shared(comm, own if comm.rank == root else None, root)

@@ -43,7 +43,8 @@ def launched() -> bool:
 
 
 def world() -> MPI.Comm:
-    """All ranks. Starts MPI where it has not been started; raises InputError as the import of mpi4py.MPI."""
+    """Communicator of all ranks. Starts MPI where it has not been started; raises InputError as the import of
+    mpi4py.MPI."""
     from mpi4py import MPI
 
     return MPI.COMM_WORLD

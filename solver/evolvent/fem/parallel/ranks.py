@@ -72,7 +72,7 @@ def on_first(comm: MPI.Comm, work: Callable[[], T]) -> T:
 
 
 def shared(comm: MPI.Comm, value: T | None, root: int) -> T:
-    """`value` of rank `root` on all ranks; with several ranks its arrays are read-only and exist once a node.
+    """Object `value` of rank `root` on all ranks; with several ranks its arrays are read-only and exist once a node.
 
     Collective. The memory is freed with the last array. Raises OSError where a node has no room for it.
     """
@@ -142,7 +142,7 @@ def _parts(value: object) -> list[memoryview]:
 
 
 def node_memory(comm: MPI.Comm, node: MPI.Comm, size: int) -> memoryview:
-    """`size` bytes that all ranks of a node share. Collective. Raises OSError on all ranks."""
+    """Memory of `size` bytes that all ranks of a node share. Collective. Raises OSError on all ranks."""
     path = together(comm, lambda: _memory_file(size) if node.rank == 0 else "")
     path = node.bcast(path, root=0)
     try:

@@ -1,7 +1,5 @@
-"""Where the flanks of a gear pair face each other at one position: all that wear does not change.
-
-A search finds it once. The gap of flanks that wear on is `pair_contact`'s.
-"""
+"""Geometry of the contact of a gear pair at one position, without wear, from one search. `pair_contact` has the gap of
+worn flanks."""
 
 from __future__ import annotations
 
@@ -60,29 +58,29 @@ class ContactGeometry:
 
     @cached_property
     def flank_hats(self) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-        """(q, flank nodes) of pinion and wheel: hat functions of the flanks' nodes at the points."""
+        """Hat functions (q, flank nodes) of the flank nodes of pinion and wheel at the points."""
         pairs, (pinion, wheel) = [t.pairing for t in self.teeth], (body.flank for body in self.bodies)
         first = sp.vstack([pinion.hat_matrix(p.facet1, p.xi1) for p in pairs]).tocsr()
         return first, sp.vstack([wheel.hat_matrix(p.facet2, p.xi2) for p in pairs]).tocsr()
 
     @cached_property
     def tooth(self) -> Ints:
-        """(n,) tooth pair of each node."""
+        """Tooth pair (n,) of each node."""
         return np.concatenate([np.full(len(t.operator.nodes), t.tooth) for t in self.teeth])
 
     @cached_property
     def point_tooth(self) -> Ints:
-        """(q,) tooth pair of each point."""
+        """Tooth pair (q,) of each point."""
         return np.concatenate([np.full(len(t.operator.weights), t.tooth) for t in self.teeth])
 
     @cached_property
     def node(self) -> Ints:
-        """(n,) flank node of the pinion's tooth."""
+        """Flank node (n,) of the pinion's tooth."""
         return np.concatenate([t.operator.nodes for t in self.teeth])
 
     @cached_property
     def roll_distance(self) -> Floats:
-        """(n,) roll distance ξ of the contact line in each node's slice [mm]."""
+        """Roll distance ξ (n,) of the contact line in each node's slice [mm]."""
         return self.stand.pair.roll_distance(self.stand.angle, self.tooth, self.bodies[Member.PINION].z[self.node])
 
     @cached_property
@@ -96,7 +94,7 @@ class ContactGeometry:
 
     @cached_property
     def force_points(self) -> tuple[Floats, Floats]:
-        """Where the forces act: the same, displaced as the flanks were when they were searched."""
+        """Points at which the forces act: `points`, displaced as the flanks were when they were searched."""
         result = []
         for gear, points in zip(Member, self.points):
             result.append(np.concatenate([t.displaced_from(gear, x) for t, x in zip(self.teeth, self._split(points))]))
@@ -113,8 +111,8 @@ class ContactGeometry:
 
     @cached_property
     def at_tip_edge(self) -> Bools:
-        """(q,) bool: points in the last row of facets before a tip edge of either gear. Where these carry load the
-        flank ends in a corner and the pressure is singular, a matter of the mesh."""
+        """Points (q,) bool in the last row of facets before a tip edge of either gear. Where these carry load the flank
+        ends in a corner and the pressure is singular, a matter of the mesh."""
         pinion, wheel = self.bodies
         parts = []
         for t in self.teeth:
@@ -127,7 +125,7 @@ class ContactGeometry:
 
     @cached_property
     def across(self) -> Floats:
-        """(q,) signed distance [mm of profile arc] of the points from the nominal contact line, which is the flank's
+        """Signed distance (q,) [mm of profile arc] of the points from the nominal contact line, which is the flank's
         generator and perpendicular to the profile; positive towards the pinion's tip."""
         pinion = self.bodies[Member.PINION]
         ρ_line = self.stand.pair.pitch_point_roll_lengths[Member.PINION] + self.roll_distance
@@ -136,7 +134,8 @@ class ContactGeometry:
 
     @cached_property
     def opposite(self) -> Floats:
-        """(q,) the same on the wheel's flank, of what lies opposite the points; positive towards the wheel's tip."""
+        """Signed distance (q,) [mm of profile arc] of the points' partners on the wheel's flank from the nominal
+        contact line; positive towards the wheel's tip."""
         gear, base = Member.WHEEL, self.bodies[Member.WHEEL].gear.base_radius
         ρ_line = self.stand.pair.pitch_point_roll_lengths[gear] - self.roll_distance
         axis = self.stand.tilt(gear)[: self.d, : self.d]
@@ -145,7 +144,7 @@ class ContactGeometry:
 
     @cached_property
     def window_distance(self) -> Floats:
-        """(q,) distance of the points from their contact lines, in half-widths of the window."""
+        """Distance (q,) of the points from their contact lines, in half-widths of the window."""
         parts = [
             arc_distance(self.bodies[Member.PINION], self.stand, t.tooth, t.operator.nodes) / self.half_width
             for t in self.teeth
@@ -164,8 +163,8 @@ class ContactGeometry:
         return rows, [slice(a, b) for a, b in pairwise(ends)]
 
     def jump_maps(self, gear: Member, k: int) -> list[JumpMap]:
-        """For each tooth pair, the map from a gear's displacements at its coupled nodes to the first k components of
-        the local jumps."""
+        """Map of each tooth pair from a gear's displacements at its coupled nodes to the first k components of the
+        local jumps."""
         R = self.stand.rotation(gear, self.d)
         result = []
         for t in self.teeth:
@@ -182,10 +181,10 @@ class ContactGeometry:
     def compliance(
         self, k: int, threads: Threads = nullcontext, rough: NearlyNormal | None = None
     ) -> JumpCompliance:
-        """Of the first k components of the local jumps, (n·k, n·k): the sum over both gears.
+        """Compliance of the first k components of the local jumps, (n·k, n·k): the sum over both gears.
 
-        threads: in which each gear's is put together. rough: its rough matrix where that is known; only for gears whose
-        compliance is known by products.
+        threads: context in which each gear's is assembled. rough: its approximate matrix where that is known, only for
+        gears whose compliance is applied without a matrix.
         """
         parts = []
         for gear, body in zip(Member, self.bodies):
@@ -205,5 +204,5 @@ class ContactGeometry:
 
 
 def relative_velocity(geometry: ContactGeometry) -> Floats:
-    """(n, d) velocity of pinion over wheel per radian of pinion rotation, local frames."""
+    """Velocity (n, d) of pinion over wheel per radian of pinion rotation, in local frames."""
     return geometry.spins[Member.PINION] - geometry.spins[Member.WHEEL] / geometry.stand.pair.ratio

@@ -1,4 +1,4 @@
-"""The contact points of a gear position: where they lie on both flanks, what they carry, how they slide."""
+"""The contact points of a gear position: their places on both flanks, tractions and sliding velocities."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class ContactPoints:
 
     @property
     def pressure(self) -> Floats:
-        """λ (q,) [MPa]."""
+        """Contact pressure λ (q,) [MPa]."""
         return self.traction[:, 0]
 
 

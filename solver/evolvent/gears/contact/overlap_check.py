@@ -29,7 +29,7 @@ FlankPoints = tuple[Surface, Ints, Floats]
 
 @dataclass(frozen=True)
 class UnsearchedOverlap:
-    """Where the undeformed flanks of a tooth pair overlap, or nearly do, outside the window.
+    """Points where the undeformed flanks of a tooth pair overlap, or nearly do, outside the window.
 
     tooth: tooth pair.
     pinion: the pinion's flank in place.
@@ -50,17 +50,17 @@ class UnsearchedOverlap:
 
     @property
     def normals(self) -> Floats:
-        """(q, d) unit normals along which the gaps were measured."""
+        """Unit normals (q, d) along which the gaps were measured."""
         n = self.pinion.evaluate(self.pinion.normals, self.pairs.facet1, self.pairs.xi1[:, None])[0][:, 0]
         return np.asarray(n / np.linalg.norm(n, axis=1, keepdims=True))
 
 
 def unsearched_overlaps(geometry: ContactGeometry, teeth: tuple[int, ...]) -> tuple[UnsearchedOverlap, ...]:
-    """Of all tooth pairs, for flanks without wear.
+    """Overlaps outside the window of all tooth pairs, for flanks without wear.
 
-    Only what overlaps undeformed is looked at, and what a rotation of up to NEARLY can bring to overlap: loaded teeth
-    give way, so that flanks apart from the contact move away from each other. And only slices whose contact line is
-    off the path of contact: on it conjugate flanks are closest in the window. Raises SearchError.
+    Only flanks that overlap undeformed are checked, or that a rotation of up to NEARLY can bring to overlap: loaded
+    teeth deflect, so that flanks apart from the contact move away from each other. And only slices whose contact line
+    is off the path of contact: on it conjugate flanks are closest in the window. Raises SearchError.
     """
     overlaps, module = [], geometry.bodies[Member.PINION].gear.normal_module
     for tooth in teeth:

@@ -1,4 +1,4 @@
-"""The contact of a gear pair at one position: what a search has found, and the gap as the flanks are worn.
+"""The contact of a gear pair at one position: paired points of the flanks, and the gap with their wear.
 
 Only the nodes of a window about each contact line take part. A solution that touches the window's rim is refused by
 `ContactGeometry.reaches_rim`, and the caller widens the window; contact outside of it is found by `overlap_check`. The
@@ -39,19 +39,19 @@ class GearContact:
 
     @property
     def stand(self) -> Stand:
-        """Where the gears stood in the search."""
+        """Angular position of the gears in the search."""
         return self.geometry.stand
 
     def with_wear(self, bodies: tuple[GearBody, GearBody]) -> GearContact:
-        """The same position between the same gears with other wear: the geometry stays."""
+        """Contact of the same gears at the same position with other wear: the geometry stays."""
         return replace(self, bodies=bodies)
 
     def without_bodies(self) -> GearContact:
-        """The same without the gears, which every rank has."""
+        """Contact without the gears, which every rank has, to be sent between ranks."""
         return GearContact(replace(self.geometry, bodies=()), ())
 
     def with_bodies(self, bodies: tuple[GearBody, GearBody]) -> GearContact:
-        """`without_bodies` undone."""
+        """Contact with the gears again that `without_bodies` left out."""
         return GearContact(replace(self.geometry, bodies=_without_wear(bodies)), bodies)
 
     @cached_property
@@ -68,14 +68,15 @@ class GearContact:
     ) -> CondensedSystem:
         """Condensed system with one free rotation: of the `loaded` gear, under `torque` [N·mm; per mm of width in 2D].
 
-        normal_only: without friction only the normal components are condensed, a ninth of the work. threads: in which
-        each gear's compliance is put together.
+        normal_only: without friction only the normal components are condensed, a ninth of the work. threads: context in
+        which each gear's compliance is assembled.
         """
         compliance = self.geometry.compliance(1 if normal_only else self.geometry.d, threads)
         return self.system_with(compliance, loaded, torque)
 
     def system_with(self, compliance: JumpCompliance, loaded: Member, torque: float) -> CondensedSystem:
-        """The same with a compliance that is known."""
+        """Condensed system with a known compliance and one free rotation: of the `loaded` gear, under `torque` [N·mm;
+        per mm of width in 2D]."""
         k = compliance.k
         n = len(self.geometry.node) * k
         motion = self.geometry.spins[loaded][:, :k].reshape(n, 1)

@@ -22,7 +22,7 @@ from evolvent_meshes.arrays import Floats
 def pressure_normals(
     operator: ContactOperator, pinion: GearBody, wheel_flank: Surface, stand: Stand, tooth: int
 ) -> Floats:
-    """(n, d) unit normals at the nodes of a tooth pair's contact.
+    """Unit normals (n, d) at the nodes of a tooth pair's contact.
 
     operator: with the pinion's normals in its frames. wheel_flank: in the common frame.
     """

@@ -34,13 +34,13 @@ def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tup
 
 
 def facets_in_window(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> Bools:
-    """(m,) bool: the pinion's facets that have a node within the window."""
+    """Facets (m,) bool of the pinion that have a node within the window."""
     near = _near_line(pinion, stand, tooth, half_width)
     return np.asarray(near[pinion.flank.facets].any(axis=1))
 
 
 def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> Bools:
-    """(n,) bool: the flank nodes within the window; all where its half-width is infinite."""
+    """Flank nodes (n,) bool within the window; all where its half-width is infinite."""
     every = np.arange(len(pinion.flank.points))
     if np.isinf(half_width):
         return np.ones(len(every), dtype=bool)
@@ -48,7 +48,7 @@ def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) ->
 
 
 def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> Bools:
-    """(n,) bool: the flank nodes in slices whose contact line is on the path of contact, or near enough its ends that
+    """Flank nodes (n,) bool in slices whose contact line is on the path of contact, or near enough its ends that
     deflection can bring the tip's edge into contact."""
     pair = stand.pair
     start, end = pair.path_of_contact

@@ -19,7 +19,7 @@ ACCURACY = 1e-4  # of the forces: the stiffness, an average of them, is then rig
 
 
 def tangent_stiffness(system: CondensedSystem, state: Equilibrium) -> float:
-    """dF/dδ [N/mm; N/mm² in 2D] of a gear pair's frictionless system (k = 1) about an equilibrium.
+    """Tangent stiffness dF/dδ [N/mm; N/mm² in 2D] of a gear pair's frictionless system (k = 1) about an equilibrium.
 
     F is the torque over the base radius of the gear that turns freely, δ its rotation times that radius. With T the
     tangent of the equilibrium in these units, T (∂f, ∂δ) = (0, ∂F). One factorisation, as in a Newton step.

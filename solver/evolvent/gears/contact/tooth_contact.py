@@ -46,7 +46,7 @@ class ToothContact:
 
     @cached_property
     def projection(self) -> MortarProjection:
-        """Π from the wheel's coupled nodes, (n, m)."""
+        """Mortar projection Π from the wheel's coupled nodes, (n, m)."""
         return self.operator.jump2.of_columns()
 
     def displaced_from(self, gear: Member, points: Floats) -> Floats:

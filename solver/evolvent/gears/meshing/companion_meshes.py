@@ -14,11 +14,12 @@ from evolvent_meshes.sector.section import SectorResolution
 COARSENING = 2.0
 """Element size of the companion over that of the run."""
 LEAST_LAYERS = 2
-"""Layers of elements over the face width, at least: both ends of the face need their own."""
+"""Least number of layers of elements over the face width: both ends of the face need their own."""
 
 
 def coarser(fine: SectorResolution) -> SectorResolution:
-    """The same grading with elements of `COARSENING` times the size, as far as counts can be divided."""
+    """Sector resolution of the companion, graded as the run's, with elements of `COARSENING` times the size as far as
+    counts can be divided."""
 
     def half(count: int, least: int = 1) -> int:
         return max(least, round(count / COARSENING))
@@ -42,9 +43,9 @@ def coarser(fine: SectorResolution) -> SectorResolution:
 
 
 def coarser_levels(fine: LevelledSector) -> LevelledSector:
-    """As many levels on a sector with elements of `COARSENING` times the size: so those of every level are as much
-    larger, and the error of the body is seen beside that of the contact. One level less on the same sector would cost
-    half of the patches, but leave the body as it is."""
+    """Levelled sector of the companion: as many levels on a sector with elements of `COARSENING` times the size. So the
+    elements of every level are as much larger, and the error of the body is included beside that of the contact. One
+    level less on the same sector would cost half of the patches, but leave the body as it is."""
     return replace(fine, coarse=coarser(fine.coarse))
 
 

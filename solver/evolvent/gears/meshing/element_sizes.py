@@ -20,21 +20,22 @@ ELEMENTS_PER_WIDTH = {"quick": 1.7, "standard": 3.0, "fine": 6.0}
 """Elements across the Hertz width 2b_H. Fitted peak against Hertz at mid-face of the Yang pair, median and nine in ten:
 quick 4 and 13 %, standard 0.3 and 2.6 %."""
 LEVELS_PER_WIDTH = {"quick": 1.7, "standard": 3.75, "fine": 6.0}
-"""The same on flanks with levels. Yang's pair with 3, 3.75 and 4.5 elements: nine in ten peaks are within 2.1, 1.4 and
-1.2 % of Hertz, the peak-to-peak transmission error lies 1.2, 0.2 and 0 % below that with 4.5, a position takes 1, 1.4
-and 1.8 times as long."""
+"""Elements across the Hertz width 2b_H on flanks with levels. Yang's pair with 3, 3.75 and 4.5 elements: nine in ten
+peaks are within 2.1, 1.4 and 1.2 % of Hertz, the peak-to-peak transmission error lies 1.2, 0.2 and 0 % below that with
+4.5, a position takes 1, 1.4 and 1.8 times as long."""
 STIFF_PINION, STIFF_ELEMENTS = 5.0, 3.0
-"""Where the pinion, which carries the pressure, is so many times as stiff as the wheel, the contact is at least so many
-elements wide. Largest pressure of a spur pair 20/40 over that of a mesh twice as fine, at 1.7 elements: ratio 4.7 1.04,
-ratio 7 1.96, ratio 70 2.7; at 3: 1.01, 1.01, 1.03. With the softer gear as pinion: 1.03 at 1.5 elements."""
+"""Stiffness of the pinion, which carries the pressure, over that of the wheel, from which on the contact is at least so
+many elements wide. Largest pressure of a spur pair 20/40 over that of a mesh twice as fine, at 1.7 elements: ratio 4.7
+1.04, ratio 7 1.96, ratio 70 2.7; at 3: 1.01, 1.01, 1.03. With the softer gear as pinion: 1.03 at 1.5 elements."""
 SHEAR_PER_ELEMENT = {"quick": (0.85, 0.85), "standard": (0.85, 1.05), "fine": (1.2, 1.4)}
-"""By how many elements a layer of (pinion, wheel) may shear the pressure ridge, on average along the profile; near the
+"""Elements by which a layer of (pinion, wheel) may shear the pressure ridge, on average along the profile; near the
 pinion tip it is 1.7 times that. The pinion, on whose nodes the jump is defined, decides: there 1.05 instead of 0.85 at
 standard makes nine in ten peaks right within 4.5 % instead of 2.6 %, and at quick 1.25 within 28 % instead of 13 %."""
 LEAST_LAYERS = {"quick": 8, "standard": 12, "fine": 20}
-"""Layers of a spur gear, whose contact line is the lead line: enough for crowning and the ends of the face."""
+"""Least number of layers of a spur gear, whose contact line is the lead line: enough for crowning and the ends of the
+face."""
 LEAST_ROWS = 4
-"""Coarse rows of a tooth, each as high as three profile elements: fewer are too high for a thin tip."""
+"""Least number of coarse rows of a tooth, each as high as three profile elements: fewer are too high for a thin tip."""
 LAYER_DEPTHS = np.array([0.57, 0.86, 1.26])
 """Thin layers below the flank in half-widths b_H; measured as enough for 3 elements across 2b_H."""
 DEEPEST = 0.35
@@ -49,7 +50,8 @@ He's spur pair at quick, standard and fine, against 12 and 16: 0.04, 0.05, 0.09 
 4 and 4; 0.29, 0.40, 0.72 % with 2 and 4. In space the rows of the rim cost most: the cut faces are condensed
 densely."""
 FORE_LAND = 1.2
-"""The fine flank starts so many half-widths below the start of active profile, for the patch has a width."""
+"""Distance from the start of the fine flank to the start of active profile, in half-widths of the contact, which has a
+width."""
 
 
 def elements_per_contact_width(problem: GearProblem, levels: bool = False) -> float:
@@ -71,7 +73,7 @@ def has_stiff_pinion(problem: GearProblem) -> bool:
 
 
 def sector_resolutions(problem: GearProblem) -> tuple[SectorResolution, SectorResolution]:
-    """(pinion's, wheel's) resolution; see `sector_resolution`."""
+    """Resolutions of (pinion's, wheel's) sector; see `sector_resolution`."""
     return sector_resolution(problem, Member.PINION), sector_resolution(problem, Member.WHEEL)
 
 
@@ -102,8 +104,8 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
 
 
 def flank_needs(problem: GearProblem, member: Member, levels: bool = False) -> FlankNeeds:
-    """What the contact of the pinion or the wheel needs of its flank's mesh, with levels of its own or without: element
-    sizes for the lightest torque that it serves, a flank that begins where the heaviest one wants it."""
+    """Requirements of the contact on the flank mesh of the pinion or the wheel, with levels of its own or without:
+    element sizes for the lightest torque that the mesh serves, a flank that begins where the heaviest one needs it."""
     estimate, gear = problem.lightest.hertz_estimate, problem.pair.gears[member]
     count = elements_per_contact_width(problem, levels)
     width = ContactWidth(estimate, member)
@@ -118,12 +120,12 @@ def flank_needs(problem: GearProblem, member: Member, levels: bool = False) -> F
 
 @dataclass(frozen=True)
 class FlankNeeds:
-    """What a contact needs of its flank's mesh."""
+    """Requirements of a contact on the mesh of its flank."""
 
     rows: float
-    """Elements along the profile."""
+    """Number of elements along the profile."""
     shear: float
-    """By how many elements the contact line is sheared over the whole face, on average along the profile."""
+    """Number of elements by which the contact line is sheared over the whole face, on average along the profile."""
     depths: Floats
     """Thickness (3,) of the thin layers below the flank [mm]."""
     start: float
@@ -160,11 +162,11 @@ class ContactWidth:
         self.pitch_point = estimate.pair.pitch_point_roll_lengths[member]
 
     def __call__(self, radius: Floats) -> Floats:
-        """At radii [mm], any shape."""
+        """Hertz width 2b_H [mm] at radii [mm], any shape."""
         return self.at_roll_length(np.sqrt(np.maximum(np.asarray(radius) ** 2 - self.gear.base_radius**2, 0.0)))
 
     def at_roll_length(self, roll: Floats) -> Floats:
-        """At transverse curvature radii ρ [mm], any shape."""
+        """Hertz width 2b_H [mm] at transverse curvature radii ρ [mm], any shape."""
         xi = np.clip(self.member.sign * (roll - self.pitch_point), *self.estimate.pair.path_of_contact)
         return 2 * self.estimate.half_width(xi)
 

@@ -22,23 +22,23 @@ from evolvent_meshes.sector.axial_layers import fewest_layers
 from evolvent_meshes.sector.section import SectorResolution
 
 BODY_ROWS = 13
-"""Coarse rows of a flank, roughly; each level halves them."""
+"""Approximate number of coarse rows of a flank; each level halves them."""
 BODY_LAYER = 0.45
 """Largest height of a coarse layer along the face, in normal modules."""
 SHEAR = {"quick": 0.425, "standard": 0.55, "fine": 0.425}
-"""By how many elements of the finest level a layer may shear the pressure ridge, on average along the profile."""
+"""Elements of the finest level by which a layer may shear the pressure ridge, on average along the profile."""
 
 
 @dataclass(frozen=True)
 class FlankLevel:
-    """How the cells below the flank are split to make a finer level."""
+    """Division of the cells below the flank that makes a finer level."""
 
     rows: int
-    """Into how many along the profile."""
+    """Number of parts along the profile."""
     layers: int
-    """Into how many along the face."""
+    """Number of parts along the face."""
     below: tuple[int, ...]
-    """Into how many in depth: the first cell below the flank, the second, ..."""
+    """Numbers of parts in depth: of the first cell below the flank, the second, ..."""
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,9 @@ class LevelledSector:
     """The coarse sector and the levels of its flank."""
 
     coarse: SectorResolution
-    """Of the body."""
+    """Resolution of the coarse sector."""
     levels: tuple[FlankLevel, ...]
-    """From the coarsest to the finest, which resolves the contact."""
+    """Levels of the flank from the coarsest to the finest, which resolves the contact."""
 
 
 def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
@@ -74,7 +74,8 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
 
 
 def _levels(count: int, factor: int, depth: float, needs: FlankNeeds) -> list[FlankLevel]:
-    """depth: of the first cell below the coarse flank [mm]; the finest level has the first thin layer's."""
+    """Divisions of a flank's levels. depth: of the first cell below the coarse flank [mm]; on the finest level it is
+    that of the first thin layer."""
     result = []
     for left in range(count - 1, -1, -1):
         split = int(np.clip(round(depth / (float(needs.depths[0]) * 2**left)), 1, 3))

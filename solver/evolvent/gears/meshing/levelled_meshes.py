@@ -1,4 +1,4 @@
-"""Which meshes a gear pair is condensed from: one fine mesh a sector, or a coarse one with levels on its flank."""
+"""Meshes from which a gear pair is condensed: one fine mesh a sector, or a coarse one with levels on its flank."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ class LevelledMesh:
     """A coarse sector, and the levels of its flank."""
 
     mesh: MeshData
-    """The sector without flank modifications, which do not change its compliance."""
+    """Mesh of the sector without flank modifications, which do not change its compliance."""
     levels: tuple[FlankLevel, ...]
-    """From the coarsest to the finest."""
+    """Levels of the flank from the coarsest to the finest."""
 
 
 SectorMesh = MeshData | LevelledMesh
-"""What a gear is condensed from."""
+"""Mesh from which a gear is condensed: one fine mesh, or a coarse one with levels on its flank."""
 
 
 def is_two_level(problem: GearProblem) -> bool:

@@ -1,4 +1,4 @@
-"""Estimates of what relief, crowning and misalignment do, before a pair is solved.
+"""Estimates of the effects of relief, crowning and misalignment, before a pair is solved.
 
 The share of the contact lines that bears, on springs of a tooth pair's stiffness; and whether the thin layers of the
 mesh below a flank are deep enough for the material that is taken off.
@@ -22,14 +22,15 @@ from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.sector.section import SectorResolution
 
 LEAST_SHARE = 0.5
-"""Of the contact lines that bear: less is more than a modification is for, or a load far below the nominal one."""
+"""Fraction of the contact lines under load below which a warning is due: modifications are meant for more, or the load
+is far below the nominal one."""
 MOST_RELIEF = 10.0
-"""Tip relief over the deflection of a tooth pair that carries the whole load: from one on it is all that is needed."""
+"""Tip relief, over the deflection of a tooth pair that carries the whole load, from which on a warning is due."""
 FOLDING = 0.5
-"""Of the thin layers' depth: modifications above it may fold them. The papers' pairs at a tenth to ten times their
-loads can have 0.5 to 0.95 of it, least near thin tips and on helical gears."""
+"""Modifications, over the depth of the thin layers, above which the mesh may fold. The papers' pairs at a tenth to ten
+times their loads can have 0.5 to 0.95 of it, least near thin tips and on helical gears."""
 POSITIONS, POINTS = 12, 64
-"""Of an angular pitch; along a contact line."""
+"""Numbers of positions over an angular pitch and of points along a contact line."""
 
 
 class TooMuchRelief(InputError):
@@ -38,16 +39,16 @@ class TooMuchRelief(InputError):
 
 @dataclass(frozen=True)
 class Bearing:
-    """Contact lines on springs, over a pitch."""
+    """Load-bearing length of contact lines on springs, over a pitch."""
 
     share: float
-    """Length that bears over the length of all contact lines."""
+    """Length under load, over the length of all contact lines."""
     deflection: float
     """Largest deflection of a spring [mm]."""
 
 
 def bearing(pair: GearPair, force: float, stiffness: float) -> Bearing:
-    """Contact lines on springs of this stiffness [N/mm²], under the normal force [N]."""
+    """Load-bearing length of contact lines on springs of this stiffness [N/mm²], under the normal force [N]."""
     rotations = np.arange(POSITIONS) * 2.0 * math.pi / pair.pinion.z / POSITIONS
     each = [_pressed(*_gaps(pair, float(rotation)), force / stiffness) for rotation in rotations]
     borne, whole, deepest = (np.array(values) for values in zip(*each, strict=True))
@@ -66,7 +67,7 @@ def _gaps(pair: GearPair, rotation: float) -> tuple[Floats, Floats]:
 
 
 def _pressed(gaps: Floats, lengths: Floats, load: float) -> tuple[float, float, float]:
-    """Length that bears, total length and largest deflection [mm]; approach δ with Σ l (δ − g)₊ = load [mm²]."""
+    """Length under load, total length and largest deflection [mm]; approach δ with Σ l (δ − g)₊ = load [mm²]."""
     borne = np.cumsum(lengths)
     approach = (load + np.cumsum(lengths * gaps)) / borne  # with the first pieces alone
     last = int(np.argmax(np.append(gaps[1:], np.inf) >= approach))

@@ -28,13 +28,13 @@ FINER = 2
 the limit of finer ones: 1.020 with six elements, 1.005 with twelve, 1.001 with 24."""
 
 LEAST_RIM = 3
-"""Rows between the cells below the fillets and the bore. They grow from thin ones: of two the second is most of the
-rim, and the tension of Zhang's pair in space was 12 % too low; three rows are 0.1 % off four."""
+"""Least number of rows between the cells below the fillets and the bore. They grow from thin ones: of two the second is
+most of the rim, and the tension of Zhang's pair in space was 12 % too low; three rows are 0.1 % off four."""
 
 
 def finer_roots(sector: SectorResolution, times: int = FINER) -> SectorResolution:
-    """So many times the elements around both fillets and across the tooth's core, and cells so much thinner below the
-    fillets.
+    """Resolution with `times` as many elements around both fillets and across the tooth's core, and cells so much
+    thinner below the fillets.
 
     With the run's two columns of core the compression of He's pair's back was 0.9 % too low, with four 0.2 %. With
     cells as deep as those of a run the tension of Zhang's tight fillets was 1.6 % too low, however many there were;
@@ -53,12 +53,12 @@ class RootMesh:
     """Makes the mesh of a run with finer roots, and with `BACK_ROOT`."""
 
     times: int = FINER
-    """See `finer_roots`."""
+    """Factor on the number of elements around the fillets, see `finer_roots`."""
     coarse: bool = False
-    """With elements of twice the size, for error bars; in the rim as far as `LEAST_RIM` allows."""
+    """Whether elements have twice the size, for error bars; in the rim as far as `LEAST_RIM` allows."""
 
     def __call__(self, problem: GearProblem, member: Member) -> SectorMesh:
-        """Of the pinion's or the wheel's sector. Raises MeshError, TooMuchRelief."""
+        """Mesh of the pinion's or the wheel's sector with finer roots. Raises MeshError, TooMuchRelief."""
         return adapted_root_mesh(problem, member, self._adapted)
 
     def _adapted(self, sector: SectorResolution) -> SectorResolution:

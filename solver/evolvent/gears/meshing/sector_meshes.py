@@ -28,7 +28,8 @@ FACET_OF = {
 
 
 def sector_meshes(problem: GearProblem) -> tuple[MeshData, MeshData]:
-    """(pinion's, wheel's) sector in its own frame [mm]; of a plane problem the mid-face section. Raises MeshError."""
+    """Meshes of (pinion's, wheel's) sector in its own frame [mm]; of a plane problem the mid-face section. Raises
+    MeshError."""
     return gear_mesh(problem, Member.PINION), gear_mesh(problem, Member.WHEEL)
 
 

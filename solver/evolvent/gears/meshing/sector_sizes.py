@@ -20,7 +20,7 @@ class SectorSize:
     """Degrees of freedom of a sector, or of its plane section."""
 
     dofs: int
-    """All degrees of freedom."""
+    """Number of all degrees of freedom."""
     flank: int
     """Degrees of freedom of the loaded flank."""
     cuts: int
@@ -89,9 +89,9 @@ class LevelledSize:
     """Degrees of freedom of a sector whose flank has levels of its own."""
 
     sector: SectorSize
-    """Of the coarse sector."""
+    """Degrees of freedom of the coarse sector."""
     flank: int
-    """Of the flank's finest level."""
+    """Degrees of freedom of the flank's finest level."""
 
     @staticmethod
     def of(levelled: LevelledSector, gear: GearParameters | None = None) -> LevelledSize:

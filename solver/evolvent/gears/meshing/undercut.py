@@ -1,4 +1,4 @@
-"""What a user is told of gears whose rack takes a part of the involute away."""
+"""Warnings of gears whose rack takes a part of the involute away."""
 
 from __future__ import annotations
 

@@ -13,11 +13,11 @@ FEWEST_FITTED = 1.5
 """Fewest facets across Hertz' contact width for a fitted peak to be reported of a spur pair: with fewer, fitted peaks
 are up to 2.6 times Hertz' for the same load, with more they lie within 15 % (away from tip edges and relief starts)."""
 SCATTER = "may be off by 15 % and more and are for orientation only"
-"""What warnings say of peak pressures on fewer elements."""
+"""Words of warnings on the error of peak pressures on few elements."""
 FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
-"""Remedy of few elements."""
+"""Words of warnings on the remedy for few elements."""
 HEIGHT_TOLERANCE = 1e-6
-"""Nodes within this height [mm] are of one row."""
+"""Largest difference of height of the nodes of one row [mm]."""
 
 
 def cells_across(

@@ -29,36 +29,36 @@ class Slices:
     """The contact at a position in n slices: one a tooth pair and a layer of the mesh along z that bears load."""
 
     tooth: Ints
-    """(n,) int, index of the tooth pair."""
+    """Index (n,) of the tooth pair."""
     z: Floats
-    """(n,) height of the slice's middle [mm]."""
+    """Height (n,) of the slice's middle [mm]."""
     roll_distance: Floats
-    """(n,) distance ξ of the contact line from the pitch point along the transverse line of action [mm]."""
+    """Distance ξ (n,) of the contact line from the pitch point along the transverse line of action [mm]."""
     width: Floats
-    """(n,) extent along z [mm]; 1 in 2D."""
+    """Extent (n,) along z [mm]; 1 in 2D."""
     line_load: Floats
-    """(n,) normal force per length of the contact line [N/mm]."""
+    """Normal force (n,) per length of the contact line [N/mm]."""
     peak: Floats
-    """(n,) peak of the fitted half-ellipse [MPa]; NaN on a tip edge."""
+    """Peak (n,) of the fitted half-ellipse [MPa]; NaN on a tip edge."""
     largest: Floats
-    """(n,) largest pressure of the quadrature points [MPa]."""
+    """Largest pressure (n,) of the quadrature points [MPa]."""
     half_width: Floats
-    """(n,) half-width of the fitted half-ellipse across the contact line [mm]; NaN on a tip edge."""
+    """Half-width (n,) of the fitted half-ellipse across the contact line [mm]; NaN on a tip edge."""
     hertz: Floats
-    """(n,) Hertz' p0 for the slice's line load and `radius` [MPa]."""
+    """Hertz' p0 (n,) for the slice's line load and `radius` [MPa]."""
     radius: Floats
-    """(n,) relative radius of curvature across the contact line [mm], for involutes that touch where the centre of the
+    """Relative radius of curvature (n,) across the contact line [mm], for involutes that touch where the centre of the
     slice's pressure lies; on a tip edge, which has no curvature, that on the nominal contact line."""
     edge: Bools
-    """(n,) bool, whether the slice bears on a tip edge."""
+    """Whether the slice bears on a tip edge, (n,)."""
     facet: Floats
-    """(n, 2) arc lengths of the facets of pinion and wheel in which the slice's nominal contact line lies [mm]."""
+    """Arc lengths (n, 2) of the facets of pinion and wheel in which the slice's nominal contact line lies [mm]."""
     kink: Bools
-    """(n,) bool, whether the slice's contact covers the start of a linear tip or root relief of a spur pair, see
+    """Whether the slice's contact covers the start of a linear tip or root relief of a spur pair, (n,); see
     `relief_starts`."""
     narrow: Bools
-    """(n,) bool, whether the contact of a spur pair is by Hertz narrower than `FEWEST_FITTED` facets of either flank.
-    Its line load is accurate, its fitted peak is not. On helical lines neighbouring slices make up for it."""
+    """Whether the contact of a spur pair is by Hertz narrower than `FEWEST_FITTED` facets of either flank, (n,). Its
+    line load is accurate, its fitted peak is not. On helical lines neighbouring slices make up for it."""
 
     @staticmethod
     def joined(parts: Sequence[Slices]) -> Slices:
@@ -73,28 +73,29 @@ class Slices:
         return ContactWidth(self.roll_distance, half, self.radius, self.facet)
 
     def of(self, chosen: Ints) -> Slices:
-        """These slices only. chosen: (k,) their indices."""
+        """Some of the slices. chosen: (k,) their indices."""
         return Slices(*(getattr(self, each.name)[chosen] for each in fields(Slices)))
 
     def on_nominal_lines(self, pair: GearPair) -> Slices:
-        """With Hertz' p0 for the curvatures on the nominal contact lines, which depends on the line loads alone."""
+        """Slices with Hertz' p0 for the curvatures on the nominal contact lines, which depends on the line loads
+        alone."""
         radius = nominal_radius(pair, self.roll_distance)
         return replace(self, hertz=self.hertz * np.sqrt(self.radius / radius), radius=radius)
 
     def of_hertz(self) -> Slices:
-        """With Hertz' peak pressures for the line loads in place of the fitted ones."""
+        """Slices with Hertz' peak pressures for the line loads in place of the fitted ones."""
         return replace(self, peak=np.where(self.edge, np.nan, self.hertz))
 
     def of_line_loads(self, pair: GearPair) -> Slices:
-        """With peak pressures that depend on the line loads alone, on tip edges too: Hertz' with the curvatures on the
-        nominal contact line."""
+        """Slices with peak pressures that depend on the line loads alone, on tip edges too: Hertz' with the curvatures
+        on the nominal contact line."""
         nominal = self.on_nominal_lines(pair)
         return replace(nominal, peak=nominal.hertz)
 
 
 @dataclass(frozen=True)
 class ToothSummary:
-    """One tooth pair at a position."""
+    """Force and pressures of one tooth pair at a position."""
 
     tooth: int
     """Index of the tooth pair."""
@@ -167,8 +168,8 @@ def layer_edges(heights: Floats) -> Floats:
 
 
 def _places(result: PositionResult, number: Ints, edge: Bools) -> tuple[Floats, Floats]:
-    """`Slices.roll_distance` and `Slices.radius`, from means of the contact points weighted with their forces. number:
-    (q,) slice of each point; edge: (n,)."""
+    """Values of `Slices.roll_distance` and `Slices.radius`, from means of the contact points weighted with their
+    forces. number: (q,) slice of each point; edge: (n,)."""
     c, pair = result.contact, result.stand.pair
     force = c.pressure * np.abs(c.weights)
     whole = np.bincount(number, force, len(edge))
@@ -179,8 +180,8 @@ def _places(result: PositionResult, number: Ints, edge: Bools) -> tuple[Floats, 
 
 
 def _fits(c: ContactPoints, number: Ints, load: Floats, edge: Bools) -> Floats:
-    """(3, n), the largest pressure of each slice and, away from tip edges, its `fitted_peak`. number, edge: see
-    `_places`; load: (n,) [N/mm]."""
+    """Largest pressure of each slice and, away from tip edges, its `fitted_peak`, (3, n). number, edge: see `_places`;
+    load: (n,) [N/mm]."""
     order = np.argsort(number, kind="stable")
     points = np.split(order, np.searchsorted(number[order], np.arange(1, len(load))))
     largest = [c.pressure[i].max() for i, _ in zip(points, load)]

@@ -19,15 +19,16 @@ class FlankFacets:
     """The facets of a gear's loaded flank."""
 
     z: Floats
-    """(n,) heights of the flank's nodes [mm]."""
+    """Heights (n,) of the flank's nodes [mm]."""
     rows: Floats
-    """(m + 1,) transverse curvature radii at which the m facets along the profile begin and end, ascending [mm]."""
+    """Transverse curvature radii (m + 1,) at which the m facets along the profile begin and end, ascending [mm]."""
     base_radius: float
     """Base radius of the gear [mm]."""
 
     @staticmethod
     def of(z: Floats, roll_lengths: Floats, base_radius: float, order: int) -> FlankFacets:
-        """z, roll_lengths: (n,) heights and curvature radii of the flank's nodes [mm]; order: of the facets."""
+        """Facets of a flank. z, roll_lengths: (n,) heights and curvature radii of the flank's nodes [mm]; order: of the
+        facets."""
         ordered = np.sort(roll_lengths[z <= z.min() + HEIGHT_TOLERANCE])
         rows = ordered[np.diff(ordered, prepend=-np.inf) > SAME_ROW]
         return FlankFacets(z, rows[::-1][::order][::-1], base_radius)

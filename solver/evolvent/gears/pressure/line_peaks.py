@@ -20,12 +20,12 @@ class LinePeak:
     """The largest peak pressure along a contact line between the tip-edge zones and away from relief starts."""
 
     roll_distance: float
-    """Where it stands [mm]; NaN where there is none."""
+    """Roll distance of the peak [mm]; NaN where there is none."""
     pressure: float
     """Peak pressure [MPa]; NaN where there is none: no part of the line lies between the zones, or the contact covers
     the start of a relief."""
     at_zone_end: bool
-    """It stands where a tip-edge zone begins, and the pressure may be larger further in."""
+    """Whether the peak lies where a tip-edge zone begins, and the pressure may be larger further in."""
 
 
 NO_PEAK = LinePeak(float("nan"), float("nan"), False)

@@ -25,13 +25,13 @@ class PitchPressure:
     pair: GearPair
     """The gear pair."""
     cuts: tuple[Slices, ...]
-    """(k,) the contact of each position in slices."""
+    """Contact (k,) of each position in slices."""
     inner_path: tuple[float, float]
     """Roll distances [mm] between which no slice bears on a tip edge at any friction coefficient."""
 
     @cached_property
     def at_positions(self) -> Floats:
-        """(k,) largest peak pressure between the tip-edge zones and away from the starts of linear reliefs [MPa]; NaN
+        """Largest peak pressure (k,) between the tip-edge zones and away from the starts of linear reliefs [MPa]; NaN
         where no part of the contact lies there."""
         return np.array([_largest(self._line_peaks(cut)).pressure for cut in self.cuts])
 
@@ -52,7 +52,7 @@ class PitchPressure:
 
 
 def _largest(peaks: Sequence[LinePeak]) -> LinePeak:
-    """`NO_PEAK` where no pressure is known."""
+    """Largest of some peaks; `NO_PEAK` where no pressure is known."""
     return max((peak for peak in peaks if np.isfinite(peak.pressure)), key=lambda peak: peak.pressure, default=NO_PEAK)
 
 

@@ -1,4 +1,4 @@
-"""Where linear tip and root reliefs of a spur pair begin, and the contacts that cover such a place.
+"""Starts of linear tip and root reliefs of a spur pair, and the contacts that cover them.
 
 There the flank has a convex kink by the angle 2α. A contact covers it while the kink lies between the contact's rims.
 On the side of the flank without relief these are ±b about the nominal contact line, b Hertz' half-width for the load.
@@ -27,7 +27,7 @@ contact's width changes over its reach."""
 
 @dataclass(frozen=True)
 class ReliefStart:
-    """Where a linear tip or root relief begins."""
+    """Start of a linear tip or root relief."""
 
     member: Member
     """The gear with the relief."""
@@ -58,13 +58,13 @@ class ContactWidth:
     """Widths of n line contacts of a spur pair."""
 
     roll_distance: Floats
-    """(n,) roll distance ξ of the nominal contact line from the pitch point [mm]."""
+    """Roll distance ξ (n,) of the nominal contact line from the pitch point [mm]."""
     half_width: Floats
-    """(n,) Hertz' half-width b for the line load [mm]."""
+    """Hertz' half-width b (n,) for the line load [mm]."""
     radius: Floats
-    """(n,) relative radius of curvature R [mm]."""
+    """Relative radius of curvature R (n,) [mm]."""
     facet: Floats
-    """(n, 2) arc lengths of the facets of pinion and wheel there [mm]."""
+    """Arc lengths (n, 2) of the facets of pinion and wheel there [mm]."""
 
     def at(self, x: float) -> ContactWidth:
         """The contact at a roll distance x [mm], interpolated; roll distances are ascending."""

@@ -1,4 +1,4 @@
-"""How much of a face the heights of a flank chart cover, and where their middle lies.
+"""Part of a face that the heights of a flank chart cover, and where their middle lies.
 
 Heights count from mid-face. A measured helix ends before the face does: ISO 1328-1 evaluates it without 5 % of the face
 width at either end, or without one module there. So a chart may be shorter than the face, to which it is extended by
@@ -31,11 +31,11 @@ class FaceCoverage:
     high: float
     """Highest height [mm]."""
     face_width: float
-    """Of the gear [mm]."""
+    """Face width of the gear [mm]."""
 
     @staticmethod
     def of(heights: Floats, face_width: float) -> FaceCoverage:
-        """heights: ascending [mm]; face_width [mm]."""
+        """Coverage of a face by the heights of a chart. heights: ascending [mm]. face_width: of the gear [mm]."""
         return FaceCoverage(float(heights[0]), float(heights[-1]), face_width)
 
     @property

@@ -4,9 +4,9 @@
     144.2,-10.0,0.3
 
 One line a point of a grid over diameter and height; z_mm, from mid-face, may be left out where the profile is the same
-over the face. depth: what is missing of the designed flank, modifications included, normal to it; negative where there
-is more. Between points the depth is linear in the involute's arc and in z, beyond the chart that of its rim: a chart
-may be a little shorter than the face (`face_coverage.py`).
+over the face. depth: material missing from the designed flank, modifications included, normal to it; negative where
+there is more. Between points the depth is linear in the involute's arc and in z, beyond the chart that of its rim: a
+chart may be a little shorter than the face (`face_coverage.py`).
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ class FlankChart:
     """Depth of material missing from the designed flank, on a grid."""
 
     diameters: Floats
-    """(k,) ascending [mm]."""
+    """Diameters of the grid (k,), ascending [mm]."""
     heights: Floats
-    """(l,) ascending, from mid-face [mm]; a single one: the same over the face."""
+    """Heights of the grid (l,) from mid-face, ascending [mm]; a single one: the same over the face."""
     depth: Floats
-    """(k, l) normal to the flank; negative where there is more material [mm]."""
+    """Missing depth (k, l) normal to the flank; negative where there is more material [mm]."""
 
     def __post_init__(self) -> None:
         """Raises InputError unless the arrays are those of a grid, of two diameters at least."""
@@ -60,8 +60,8 @@ class FlankChart:
 
     @staticmethod
     def read(file: str | os.PathLike[str]) -> FlankChart:
-        """From a CSV file, which is read again only after it has changed. Raises TableError where it cannot be read or
-        its points are no grid."""
+        """Chart from a CSV file, which is read again only after it has changed. Raises TableError where it cannot be
+        read or its points are no grid."""
         instance("flank chart", file, (str, os.PathLike), "give the path of a CSV file")
         path = Path(file)
         try:
@@ -74,7 +74,7 @@ class FlankChart:
 
     @staticmethod
     def parsed(path: Path) -> FlankChart:
-        """From a CSV file, read anew; see `read`."""
+        """Chart from a CSV file, read anew. Raises TableError where its points are no grid."""
         wanted = (DIAMETER, DEPTH, HEIGHT) if has_column(path, HEIGHT) else (DIAMETER, DEPTH)
         d, h, *rest = read_columns(path, wanted)
         z = rest[0] if rest else np.zeros_like(d)
@@ -121,7 +121,7 @@ class FlankChart:
         return FlankChart(self.diameters[first:], self.heights, self.depth[first:])
 
     def coverage(self, gear: GearParameters) -> FaceCoverage:
-        """Where the heights lie on a gear's face."""
+        """Part of a gear's face that the heights cover."""
         return FaceCoverage.of(self.heights, gear.face_width)
 
     def arcs(self, gear: GearParameters) -> Floats:
@@ -138,7 +138,7 @@ class FlankChart:
         return np.asarray(RegularGridInterpolator((arcs, self.heights), self.depth)(np.column_stack([s, t])))
 
     def text(self) -> str:
-        """As a CSV file that `read` gives back: diameters to 1e-9 mm, depths to 1e-9 µm."""
+        """Text of a CSV file that `read` gives back: diameters to 1e-9 mm, depths to 1e-9 µm."""
         stream = io.StringIO()
         writer = csv.writer(stream, lineterminator="\n")
         over_face = len(self.heights) > 1
@@ -151,7 +151,8 @@ class FlankChart:
 
 @lru_cache(maxsize=4)
 def _read(path: Path, changed: int, size: int) -> FlankChart:
-    """See FlankChart.read. changed, size: of the file, so that a changed one is read again."""
+    """Chart from a CSV file. changed, size: time of the last change and size of the file, so that a changed one is read
+    again."""
     return FlankChart.parsed(path)
 
 

@@ -13,11 +13,12 @@ from evolvent_meshes.gears.profile import Profile
 from evolvent_meshes.input_checks import Words, refuse
 
 POINTS = 2001
-"""Of fillet and involute each: the moment of inertia is then right to 1e-9."""
+"""Number of points of fillet and involute each: the moment of inertia is then right to 1e-9."""
 TONNE_PER_MM3 = 1e-12
-"""One kg/m³."""
+"""Density of 1 kg/m³ [t/mm³]."""
 ROUNDING = 1e-3
-"""By which a meshed body may have more inertia than the drawn one, and a given value less than either."""
+"""Relative difference by which a meshed body may have more inertia than the drawn one, and a given value less than
+either."""
 
 
 def polar_moment(gear: GearParameters, density: float) -> float:
@@ -43,12 +44,12 @@ def solid_moment(gear: GearParameters, density: float) -> float:
 
 
 def _disc_moment(gear: GearParameters, section: float, bore: float) -> float:
-    """[mm⁵] of a disc with teeth and a bore [mm]. section: ∮ r⁴ dθ of its rim [mm⁴]."""
+    """Geometric moment [mm⁵] of a disc with teeth and a bore [mm]. section: ∮ r⁴ dθ of its rim [mm⁴]."""
     return float(gear.face_width * (section - 2.0 * np.pi * (bore / 2.0) ** 4) / 4.0)
 
 
 def _section(gear: GearParameters) -> float:
-    """∮ r⁴ dθ [mm⁴] along the rim of the transverse section."""
+    """Integral ∮ r⁴ dθ [mm⁴] along the rim of the transverse section."""
     profile, t = Profile(gear), np.linspace(0.0, 1.0, POINTS)
     curves = [profile.fillet(t), profile.involute_at_roll(np.linspace(*profile.roll_lengths, POINTS))]
     if profile.edge is not None:
@@ -60,7 +61,8 @@ def _section(gear: GearParameters) -> float:
 
 
 def equivalent_mass(pair: GearPair, inertias: tuple[float, float]) -> float:
-    """m_e = I_1 I_2 / (I_1 r_b2² + I_2 r_b1²) [t] of moments of inertia [t·mm²] of pinion and wheel."""
+    """Equivalent mass m_e = I_1 I_2 / (I_1 r_b2² + I_2 r_b1²) [t] along the line of action. inertias: moments of
+    inertia [t·mm²] of pinion and wheel."""
     pinion, wheel = inertias
     return pinion * wheel / (pinion * pair.wheel.base_radius**2 + wheel * pair.pinion.base_radius**2)
 
@@ -87,6 +89,6 @@ def refuse_less_than_the_body(member: Member, inertia: float, body: float, remed
 
 
 def _swept(points: Floats) -> float:
-    """|∫ r⁴ dθ| along points (n, 2) of a curve."""
+    """Integral |∫ r⁴ dθ| along points (n, 2) of a curve."""
     radius, angle = np.hypot(*points.T), np.arctan2(points[:, 1], points[:, 0])
     return float(-simpson(radius**4, x=angle))

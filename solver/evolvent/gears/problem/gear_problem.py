@@ -34,7 +34,7 @@ class MeshSettings:
     """
 
     level: Level = "standard"
-    """`quick` for orientation, `standard` for results, `fine` for reference."""
+    """Mesh level: `quick` for orientation, `standard` for results, `fine` for reference."""
     elements_per_contact_width: float | None = None
     """Elements across the Hertz width 2b_H; None: 1.7, 3 or 6 by the level, at least 3 on a stiff pinion."""
     shape: CellShape = "hexahedron"
@@ -60,25 +60,26 @@ class MeshSettings:
 
 @dataclass(frozen=True)
 class GearOptions:
-    """What is computed in full, though the result is the same without it within a tolerance (docs/evidence.md);
-    nothing of it by default."""
+    """Options that compute parts in full. By default they are reduced, with the same result within a tolerance
+    (docs/evidence.md)."""
 
     in_space: bool = False
-    """Three dimensions, also where all transverse sections are equal."""
+    """Whether to solve in three dimensions also where all transverse sections are equal."""
     friction_terms: bool = False
-    """Tangential components and friction history, also at μ = 0."""
+    """Whether to keep tangential components and friction history also at μ = 0."""
     whole_engagement: bool = False
-    """All pitches in which a tooth is in mesh; else one."""
+    """Whether to solve all pitches in which a tooth is in mesh; else one."""
     whole_gears: bool = False
-    """All sectors of a gear in one mesh; else one sector that stands for all."""
+    """Whether to condense all sectors of a gear in one mesh; else one sector that stands for all."""
     all_teeth: bool = False
-    """As many tooth pairs as the smaller gear has teeth; else those that can touch, and their neighbours."""
+    """Whether to search as many tooth pairs as the smaller gear has teeth; else those that can touch, and their
+    neighbours."""
     whole_flanks: bool = False
-    """Contact is searched on the whole flanks; else in a window about each contact line."""
+    """Whether to search contact on the whole flanks; else in a window about each contact line."""
     deflected_flanks: bool = False
-    """Contact is searched again on the flanks as they have deflected."""
+    """Whether to search contact again on the flanks as they have deflected."""
     fine_body: bool = False
-    """Back flank, fillets, core and rim are meshed finely; else the loaded flank only."""
+    """Whether to mesh back flank, fillets, core and rim finely; else the loaded flank only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,23 +101,23 @@ class GearProblem:
     pair: GearPair
     """Both gears and the position of their axes."""
     torque: float
-    """Held constant on one gear, over its whole face [N·mm]."""
+    """Constant torque on one gear, over its whole face [N·mm]."""
     torque_on: Member = Member.PINION
     """The gear with the torque; the rotation of the other one is prescribed."""
     materials: tuple[Material, Material] = (STEEL, STEEL)
-    """Of pinion and wheel."""
+    """Materials of pinion and wheel."""
     mesh: MeshSettings = MeshSettings()
-    """How finely the sectors are meshed."""
+    """Fineness and cells of the sectors' meshes."""
     flanks: tuple[FlankChart | None, FlankChart | None] = (None, None)
     """Measured or worn flanks of pinion and wheel; None: as designed. A chart that covers 80 % of its gear's face, its
     middle within 5 % of mid-face, is extended to the whole face, of which `condense` warns; less is refused."""
     options: GearOptions = GearOptions()
-    """What is computed in full."""
+    """Options to compute parts in full."""
     mesh_torques: tuple[float, float] | None = None
     """Lightest and heaviest torque that the meshes serve, on the same gear as `torque` [N·mm]; None: `torque` alone. A
     lighter `torque` has elements too long for its pressures, which an excitation can do without. Up to the heaviest all
     problems have the same sectors and, on flanks with levels, so many of the same levels as each needs:
-    `evolvent.gears.gear_model.prepare_models` condenses them once."""
+    `evolvent.gears.gear_model.condensed_gears` condenses them once."""
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, GearPair, "write GearPair(pinion, wheel, centre_distance=...)")
@@ -189,21 +190,21 @@ class GearProblem:
 
     @cached_property
     def lightest(self) -> GearProblem:
-        """Under the lightest torque that the meshes serve, whose contact is the narrowest."""
+        """Problem under the lightest torque that the meshes serve, whose contact is the narrowest."""
         return self._under(self._served[0])
 
     @cached_property
     def heaviest(self) -> GearProblem:
-        """Under the heaviest torque that they serve, whose contact is the widest."""
+        """Problem under the heaviest torque that the meshes serve, whose contact is the widest."""
         return self._under(self._served[1])
 
     def _under(self, torque: float) -> GearProblem:
-        """Itself, with what it has computed, where the torque is its own."""
+        """Problem under a torque; itself, with its computed values, where the torque is its own."""
         return self if torque == self.torque else replace(self, torque=torque)
 
     @cached_property
     def pitches(self) -> int:
-        """How many angular pitches 2π/z_1 are swept: one, or all in which a tooth is in mesh."""
+        """Number of angular pitches 2π/z_1 that are swept: one, or all in which a tooth is in mesh."""
         if not self.options.whole_engagement:
             return 1
         return math.ceil(self.pair.engagement_angle * self.pair.pinion.z / (2 * math.pi))

@@ -16,7 +16,8 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
 TOOTH_STIFFNESS = 14.0
-"""c' of a steel tooth pair [N/(mm µm)], ISO 6336-1; each tooth has twice that, in proportion to its modulus."""
+"""Single stiffness c' of a steel tooth pair [N/(mm µm)], ISO 6336-1; each tooth has twice that, in proportion to its
+modulus."""
 STEEL_MODULUS = 206e3
 """Young's modulus of that steel [MPa]."""
 
@@ -40,7 +41,7 @@ class HertzEstimate:
     modulus: float
     """Contact modulus E* [MPa]."""
     pinion_torque: float
-    """[N·mm]."""
+    """Torque on the pinion [N·mm]."""
 
     @classmethod
     def of(cls, pair: GearPair, materials: tuple[Material, Material], pinion_torque: float) -> HertzEstimate:
@@ -70,12 +71,12 @@ class HertzEstimate:
         return (between if reach == 0 else np.append(corners, between)) / pinion.base_radius
 
     def half_width(self, roll_distance: float | Floats) -> Floats:
-        """b_H [mm] at roll distances ξ [mm], with the mean line length."""
+        """Half-width b_H [mm] of the contact at roll distances ξ [mm], with the mean line length."""
         load = np.asarray(self.normal_force / self.line_lengths[1])
         return line_half_width(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
 
     def peak_pressure(self, roll_distance: float | Floats, line_length: float | None = None) -> Floats:
-        """p0 [MPa] at roll distances ξ [mm], with the given or the mean line length [mm]."""
+        """Peak pressure p0 [MPa] at roll distances ξ [mm], with the given or the mean line length [mm]."""
         load = np.asarray(self.normal_force / (line_length or self.line_lengths[1]))
         return line_peak_pressure(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
 

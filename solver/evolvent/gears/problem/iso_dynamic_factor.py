@@ -1,15 +1,16 @@
 """Internal dynamic factor K_v of ISO 6336-1:2006, clause 6, Method B: the pair as a mass on a spring, by its resonance
-ratio N, with what measurements have shown beside.
+ratio N, with terms from measurements.
 
     N ≤ N_S            K_v = 1 + N (C_v1 B_p + C_v2 B_f + C_v3 B_k)        subcritical       (Eqs 13, 14)
     N_S < N ≤ 1.15     K_v = 1 + C_v1 B_p + C_v2 B_f + C_v4 B_k            main resonance    (Eq. 20)
     1.15 < N < 1.5     linear between both                                 intermediate      (Eq. 22)
     N ≥ 1.5            K_v = C_v5 B_p + C_v6 B_f + C_v7                    supercritical     (Eq. 21)
 
-B_p and B_f are effective base pitch and profile deviations times c' over the line load, B_k what tip relief leaves of
-the deflection. It is no motion: no damping and no stiffness over the pitch are asked for, superharmonic resonances are
-in no range of their own, and for the main resonance the standard itself sends to Method A, as the true factor may be
-40 % away. Method B is meant for (v z_1/100) √(u²/(1 + u²)) above 3 m/s; below, K_v is near 1.
+B_p and B_f are effective base pitch and profile deviations times c' over the line load, B_k the part of the
+deflection that tip relief leaves. No motion is computed: damping and the stiffness over the pitch do not enter,
+superharmonic resonances are in no range of their own, and for the main resonance the standard itself sends to
+Method A, as the true factor may be 40 % away.
+Method B is meant for (v z_1/100) √(u²/(1 + u²)) above 3 m/s; below, K_v is near 1.
 """
 
 from __future__ import annotations
@@ -33,28 +34,28 @@ SLOW, FAST = 5.0, 10.0
 
 @dataclass(frozen=True)
 class Accuracy:
-    """What Method B asks of flanks beside the geometry. Without both deviations there is no K_v: that of perfect gears,
-    which has B_k alone, is none of real ones."""
+    """Flank accuracy for Method B of K_v. Without both deviations there is no K_v: that of perfect gears, which has B_k
+    alone, does not hold for real ones."""
 
     base_pitch_deviation: float | None = None
-    """f_pb, the larger of both gears [µm]; None where it is not known."""
+    """Base pitch deviation f_pb, the larger of both gears [µm]; None where it is not known."""
     profile_deviation: float | None = None
-    """f_fα, likewise [µm]."""
+    """Profile form deviation f_fα, the larger of both gears [µm]; None where it is not known."""
     tolerance_class: int | None = None
-    """Of ISO 1328-1, the coarser of both gears; None: so fine that tip relief counts, below 6."""
+    """Tolerance class of ISO 1328-1, the coarser of both gears; None: so fine that tip relief counts, below 6."""
     surface: Surface = "hardened"
-    """Of the teeth: case or surface hardened, or nitrided; through hardened or normalised; cast iron."""
+    """Surface of the teeth: case or surface hardened, or nitrided; through hardened or normalised; cast iron."""
     endurance: float | None = None
-    """σ_Hlim, allowable contact stress number [MPa]; None where it is not known."""
+    """Allowable contact stress number σ_Hlim [MPa]; None where it is not known."""
 
     def __post_init__(self) -> None:
-        """Raises ValueError."""
+        """Raises ValueError for through hardened teeth without σ_Hlim."""
         if self.surface == "through_hardened" and self.endurance is None:
             raise ValueError("running-in of through hardened teeth: wanted σ_Hlim, found none; give `endurance`")
 
 
 def running_in(deviation: float, accuracy: Accuracy, velocity: float) -> float:
-    """y_α [µm] that running-in takes off a deviation [µm], at a pitch line velocity [m/s] (clause 8; y_p of the base
+    """Running-in allowance y_α [µm] of a deviation [µm], at a pitch line velocity [m/s] (clause 8; y_p of the base
     pitch and y_f of the profile are estimated alike, clause 6)."""
     if accuracy.surface == "hardened":
         return min(0.075 * deviation, 3.0)
@@ -65,7 +66,7 @@ def running_in(deviation: float, accuracy: Accuracy, velocity: float) -> float:
 
 
 def _limited(allowance: float, limit: float, velocity: float) -> float:
-    """Above 5 m/s at most the limit, above 10 m/s half of it."""
+    """Running-in allowance: above 5 m/s at most the limit, above 10 m/s half of it."""
     if velocity <= SLOW:
         return allowance
     return min(allowance, limit if velocity <= FAST else 0.5 * limit)
@@ -93,24 +94,24 @@ def coefficients(total_contact_ratio: float) -> tuple[float, float, float, float
 
 @dataclass(frozen=True)
 class MethodB:
-    """A loaded pair as the standard sees it."""
+    """Stiffness, resonance speed and line load of a loaded pair for Method B of K_v."""
 
     single_stiffness: float
-    """c' [N/(mm µm)]."""
+    """Single stiffness c' [N/(mm µm)]."""
     mesh_stiffness: float
-    """c_γα [N/(mm µm)]."""
+    """Mesh stiffness c_γα [N/(mm µm)]."""
     resonance_speed: float
-    """n_E1 of the pinion [r/min] (Eq. 6)."""
+    """Resonance speed n_E1 of the pinion [r/min] (Eq. 6)."""
     line_load: float
-    """K_A F_t/b [N/mm]."""
+    """Line load K_A F_t/b [N/mm]."""
     total_contact_ratio: float
-    """ε_γ."""
+    """Total contact ratio ε_γ."""
     pitch_diameter: float
-    """d_1 of the pinion's reference circle [mm]."""
+    """Reference diameter d_1 of the pinion [mm]."""
     relief: float
-    """C_a [µm]: of both gears the smaller, as it has to be at both ends of the path of contact."""
+    """Tip relief C_a [µm]: the smaller of both gears, as it has to be at both ends of the path of contact."""
     accuracy: Accuracy
-    """Of the flanks."""
+    """Accuracy of the flanks."""
 
     @property
     def has_factor(self) -> bool:
@@ -119,22 +120,22 @@ class MethodB:
 
     @property
     def main_resonance(self) -> tuple[float, float]:
-        """Resonance ratios between which it is, from N_S (Eqs 11, 12)."""
+        """Resonance ratios N_S and 1.15 between which the main resonance lies (Eqs 11, 12)."""
         return (0.5 + 0.35 * math.sqrt(min(self.line_load / LIGHT, 1.0)), MAIN)
 
     @property
     def relief_term(self) -> float:
-        """B_k = |1 − c' C_a/(K_A F_t/b)| (Eq. 17)."""
+        """Tip relief term B_k = |1 − c' C_a/(K_A F_t/b)| (Eq. 17)."""
         if (self.accuracy.tolerance_class or 0) >= COARSE_CLASS:
             return 1.0
         return abs(1.0 - self.single_stiffness * self.relief / self.line_load)
 
     def ratio(self, speed: float) -> float:
-        """N = n_1/n_E1 (Eq. 9). speed: of the pinion [r/min]."""
+        """Resonance ratio N = n_1/n_E1 (Eq. 9). speed: of the pinion [r/min]."""
         return speed / self.resonance_speed
 
     def factor(self, speed: float) -> float:
-        """K_v at a speed of the pinion [r/min]; NaN where a deviation is not known."""
+        """Dynamic factor K_v at a speed of the pinion [r/min]; NaN where a deviation is not known."""
         deviations = self.accuracy.base_pitch_deviation, self.accuracy.profile_deviation
         if deviations[0] is None or deviations[1] is None:
             return math.nan
@@ -156,7 +157,7 @@ class MethodB:
 def method_b(
     pair: GearPair, mass: float, force: float, accuracy: Accuracy, moduli: tuple[float, float] = (STEEL, STEEL)
 ) -> MethodB:
-    """Of a pair under a force.
+    """Data of Method B for a pair under a force.
 
     mass: equivalent one along the line of action [t]; over the face width it is m_red (Eq. 7), of whatever turns
         rigidly with the gears.

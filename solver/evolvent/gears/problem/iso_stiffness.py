@@ -17,11 +17,12 @@ PER_SHIFT_AND_TOOTH = -0.11654, -0.24188
 PER_SHIFT_SQUARED = 0.00529, 0.00182
 """Coefficients C_1 to C_9 of q' [mm µm/N], of the smaller and of the larger gear."""
 MEASURED = 0.8
-"""C_M: measured stiffness over that of the theory."""
+"""Correction factor C_M: measured stiffness over that of the theory."""
 LIGHT = 100.0
 """Line load [N/mm] below which the stiffness falls with its fourth root."""
 STEEL, LIKE_STEEL = 206e3, 0.05
-"""Modulus [MPa] of the steel that the formula is for, and the part by which that of others may differ to be steel."""
+"""Modulus [MPa] of the steel that the formula is for, and the relative difference up to which another metal counts as
+steel."""
 THINNEST_WEB, THINNEST_RIM = 0.2, 1.0
 """Least b_s/b and s_R/m_n with which C_R is reckoned."""
 SHIFTS = -0.5, 2.0
@@ -29,7 +30,7 @@ SHIFTS = -0.5, 2.0
 
 
 def flexibility(pair: GearPair) -> float:
-    """q' [mm µm/N], least flexibility of a tooth pair: a polynomial of profile shifts and virtual numbers of teeth."""
+    """Least flexibility q' of a tooth pair [mm µm/N]: a polynomial of profile shifts and virtual numbers of teeth."""
     total = CONSTANT
     for i, gear in enumerate(by_size(pair)):
         x, z_n = gear.profile_shift, gear.virtual_teeth
@@ -38,12 +39,12 @@ def flexibility(pair: GearPair) -> float:
 
 
 def rack_factor(gear: GearParameters) -> float:
-    """C_B = [1 + 0.5 (1.2 − h_fP/m_n)] [1 − 0.02 (20° − α_n)] of the basic rack."""
+    """Basic rack factor C_B = [1 + 0.5 (1.2 − h_fP/m_n)] [1 − 0.02 (20° − α_n)]."""
     return (1.0 + 0.5 * (1.2 - gear.dedendum_coefficient)) * (1.0 - 0.02 * (20.0 - gear.normal_pressure_angle_deg))
 
 
 def blank_factor(gear: GearParameters) -> float:
-    """C_R = 1 + ln(b_s/b) / (5 e^(s_R/5m_n)) of a gear with a web; 1 of a full ring."""
+    """Gear blank factor C_R = 1 + ln(b_s/b) / (5 e^(s_R/5m_n)) of a gear with a web; 1 of a full ring."""
     if (web := gear.thin_web) is None:
         return 1.0
     width = max(web.thickness / gear.face_width, THINNEST_WEB)
@@ -52,8 +53,8 @@ def blank_factor(gear: GearParameters) -> float:
 
 
 def single_stiffness(pair: GearPair, line_load: float, moduli: tuple[float, float] = (STEEL, STEEL)) -> float:
-    """c' [N/(mm µm)] = C_M C_R C_B cos β / q' of a tooth pair, C_B the mean of both gears, C_R the smaller one: it is
-    meant for a mate that is as stiff or stiffer.
+    """Single stiffness c' = C_M C_R C_B cos β / q' of a tooth pair [N/(mm µm)], C_B the mean of both gears, C_R the
+    smaller one: it is meant for a mate that is as stiff or stiffer.
 
     line_load: K_A F_t/b [N/mm]; below 100 c' is less by (line_load/100)^0.25.
     moduli: of both gears [MPa]. Other metals than steel have c' in proportion to 2 E_1 E_2/(E_1 + E_2).
@@ -68,7 +69,8 @@ def single_stiffness(pair: GearPair, line_load: float, moduli: tuple[float, floa
 
 
 def mesh_stiffness(single: float, transverse_contact_ratio: float) -> float:
-    """c_γα = c' (0.75 ε_α + 0.25) [N/(mm µm)], mean over the mesh; up to 10 % too much where ε_α is below 1.2."""
+    """Mesh stiffness c_γα = c' (0.75 ε_α + 0.25) [N/(mm µm)], mean over the mesh; up to 10 % too much where ε_α is
+    below 1.2."""
     return single * (0.75 * transverse_contact_ratio + 0.25)
 
 
@@ -79,7 +81,8 @@ def by_size(pair: GearPair) -> tuple[GearParameters, GearParameters]:
 
 
 def outside_range(pair: GearPair) -> str | None:
-    """What of a pair the formula of q' is not made for, as found and wanted; None where it is."""
+    """Sentence on a profile shift for which the formula of q' is not made, as found and wanted; None where there is
+    none."""
     smaller, larger = (gear.profile_shift for gear in by_size(pair))
     if smaller < larger:
         return f"profile shifts {smaller:.3g} of the smaller and {larger:.3g} of the larger gear, wanted not less on it"

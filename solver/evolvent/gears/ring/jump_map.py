@@ -22,7 +22,7 @@ class JumpMap:
     axes: Floats
 
     def jumps(self, displacements: Floats) -> Floats:
-        """(n·k, c) from c columns of displacements (m·d, c)."""
+        """Local jumps (n·k, c) from c columns of displacements (m·d, c)."""
         n, k, d = self.axes.shape
         columns = displacements.shape[1]
         u = displacements.reshape(-1, d * columns)
@@ -35,5 +35,5 @@ class JumpMap:
         return nodal if self.projection is None else self.projection.transposed(nodal)
 
     def opposite(self, points: Floats) -> Floats:
-        """Where the jump's nodes lie on the gear's flank, (n, d), from its nodes there (m, d) [mm]."""
+        """Positions (n, d) of the jump's nodes on the gear's flank, from its nodes there (m, d) [mm]."""
         return points if self.projection is None else self.projection @ points

@@ -54,11 +54,11 @@ class MappedNodes:
     map: JumpMap | None = None
 
     def jumps(self, displacements: Floats) -> Floats:
-        """The functionals (m, c) of columns of displacements (d·k, c)."""
+        """Values (m, c) of the functionals for columns of displacements (d·k, c)."""
         return displacements if self.map is None else self.map.jumps(displacements)
 
     def of_turned(self, turn: Floats) -> MappedNodes:
-        """The same functionals of displacements before they are turned by `turn` (d, d)."""
+        """Functionals of displacements before they are turned by `turn` (d, d)."""
         axes = np.broadcast_to(turn, (len(self.nodes), *turn.shape)) if self.map is None else self.map.axes @ turn
         return replace(self, map=JumpMap(None if self.map is None else self.map.projection, axes))
 
@@ -67,8 +67,8 @@ class Compliance(Protocol):
     """Compliance of a gear: displacements of its flanks' nodes under forces on them, d components a node."""
 
     def jumps(self, parts: Sequence[MappedNodes]) -> Floats | SurfaceCompliance:
-        """E C Eᵀ (mm/N where E = 1) of the parts' maps E, in their order; each tooth at most once. As a matrix, or as
-        products."""
+        """Compliance E C Eᵀ (mm/N where E = 1) of the parts' maps E, in their order; each tooth at most once. It is a
+        matrix, or applied to forces without one."""
         ...
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
@@ -127,8 +127,8 @@ class ChainedCompliance:
         self._modes = self._coupling.modes
 
     def jumps(self, parts: Sequence[MappedNodes]) -> Floats:
-        """See `Compliance.jumps`. The maps are applied to the few modes of the coupling, and to the whole compliance of
-        their own tooth only."""
+        """Compliance E C Eᵀ of the parts' maps E as a matrix, in their order (mm/N where E = 1). The maps are applied
+        to the few modes of the coupling, and to the whole compliance of their own tooth only."""
         self._check([(part.tooth, node) for part in parts for node in part.nodes])
         parts = [part.of_turned(self._turn(part.tooth)) if part.tooth else part for part in parts]
         modes = [part.jumps(self._modes[_dofs(part.nodes, self.dimension)]) for part in parts]
@@ -144,7 +144,7 @@ class ChainedCompliance:
         return result
 
     def window(self, parts: Sequence[tuple[int, Ints]]) -> RingWindow:
-        """Between some nodes (k,) of some teeth, each at most once. Raises IndexError."""
+        """Compliance between some nodes (k,) of some teeth, each at most once. Raises IndexError."""
         self._check([(tooth, node) for tooth, nodes in parts for node in nodes])
         dofs = [_dofs(nodes, self.dimension) for _, nodes in parts]
         teeth = [tooth for tooth, _ in parts]
@@ -153,7 +153,8 @@ class ChainedCompliance:
         return RingWindow(own, tuple(self._modes[each] for each in dofs), coupling)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        """See `Compliance.apply`."""
+        """Displacements (..., k_out, d) [mm] of `rows_out` (k_out, 2) under `forces` (..., k_in, d) [N] on `rows_in`. A
+        row is a tooth and a flank node."""
         loaded = self._loads(rows_in, forces)
         result = np.empty((*forces.shape[:-2], len(rows_out), self.dimension))
         for tooth, (places, nodes) in self._groups(rows_out).items():
@@ -242,14 +243,15 @@ class ChainedCompliance:
 
 
 def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
-    """From face displacements (2c = `size`: low; high in the frame of the next sector) to those in the sector's own."""
+    """Matrix from face displacements (2c = `size`: low; high in the frame of the next sector) to those in the sector's
+    own."""
     turn = turn_by(settings.pitch, settings.dimension)
     low, high = sp.eye(size // 2), sp.kron(sp.eye(size // 2 // settings.dimension), turn)
     return sp.csr_array(sp.block_diag([low, high]))
 
 
 def turn_by(angle: float, dimension: int) -> Floats:
-    """Rotation about +z (d, d)."""
+    """Rotation matrix about +z (d, d)."""
     turn = np.eye(dimension)
     turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
     return turn

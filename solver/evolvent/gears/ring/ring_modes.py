@@ -41,7 +41,7 @@ class Coupling:
     which: Ints
 
     def between(self, sector: int, other: int) -> Floats:
-        """(r × r) [mm/N] amplitudes of the displacements of `sector` under those of forces on `other`."""
+        """Amplitudes (r × r) [mm/N] of the displacements of `sector` under those of forces on `other`."""
         return self.blocks[self.which[sector, other]]
 
 
@@ -142,5 +142,5 @@ def _leading(blocks: Floats, tolerance: float) -> Floats:
 
 
 def _between(faces: Floats, stiffness: Floats) -> Floats:
-    """diag(V, V)ᵀ S diag(V, V)."""
+    """Product diag(V, V)ᵀ S diag(V, V)."""
     return np.block([[faces.T @ (part @ faces) for part in np.hsplit(rows, 2)] for rows in np.vsplit(stiffness, 2)])

@@ -39,8 +39,8 @@ class RingWindow:
         return np.concatenate(moved).reshape(forces.shape)
 
     def leading(self, tolerance: float) -> tuple[Floats, Floats]:
-        """V (Σm_t·d, s) and κ (s,): V κ Vᵀ is the coupling of all teeth but for what is less than `tolerance` of the
-        largest."""
+        """Modes V (Σm_t·d, s) and amounts κ (s,): V κ Vᵀ is the coupling of all teeth without modes below `tolerance`
+        of the largest."""
         λ, Q = np.linalg.eigh(0.5 * (self.coupling + self.coupling.T))
         kept = np.abs(λ) > tolerance * np.abs(λ).max()
         parts = np.split(Q[:, kept], len(self.own))

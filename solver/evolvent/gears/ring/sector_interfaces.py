@@ -24,12 +24,12 @@ class JoinedSectors(Protocol):
         ...
 
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
-        """v_i (c, ...) of the interfaces 0 … n under face forces (2c, ...: low, high) of sectors."""
+        """Displacements v_i (c, ...) of the interfaces 0 … n under face forces (2c, ...: low, high) of sectors."""
         ...
 
 
 class ClosedRing:
-    """`total` sectors closed to a full circle, `count` of them named."""
+    """Ring of `total` sectors closed to a full circle, `count` of them named."""
 
     def __init__(self, stiffness: Floats, total: int, count: int) -> None:
         self._stiffness = stiffness
@@ -37,7 +37,8 @@ class ClosedRing:
         self._count = count
 
     def responses(self, forces: Floats) -> tuple[list[Floats], Ints]:
-        """See `JoinedSectors.responses`: they differ by the offset 1 − n … n − 1 of the sectors."""
+        """Displacements (2c × r) of the faces of sectors under face forces (2c × r) of others, one for each offset 1 −
+        n … n − 1 of the sectors, and (n × n) which of them belongs to sectors i and j."""
         faces = self.displacements({0: forces})
         offsets = np.arange(1 - self._count, self._count) % self._total
         places = np.arange(self._count)
@@ -45,7 +46,8 @@ class ClosedRing:
         return [np.concatenate(faces[offset : offset + 2]) for offset in offsets], which
 
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
-        """See `JoinedSectors.displacements`. Factors every harmonic again: keeping them all would need gigabytes."""
+        """Displacements v_i (c, ...) of the interfaces 0 … n under face forces (2c, ...: low, high) of sectors. Factors
+        every harmonic again: keeping them all would need gigabytes."""
         size = len(self._stiffness) // 2
         waves = []
         for harmonic in range(self._total // 2 + 1):
@@ -65,7 +67,7 @@ class ClosedRing:
 
 
 class OpenChain:
-    """`count` sectors in a row, the two outermost faces free, or fixed when `clamped`: A = L Lᵀ, block by block."""
+    """Chain of `count` sectors, the two outermost faces free, or fixed when `clamped`: A = L Lᵀ, block by block."""
 
     def __init__(self, stiffness: Floats, count: int, clamped: bool) -> None:
         self._size = len(stiffness) // 2
@@ -74,14 +76,15 @@ class OpenChain:
         self._diagonal, self._lower = self._factors(stiffness)
 
     def responses(self, forces: Floats) -> tuple[list[Floats], Ints]:
-        """See `JoinedSectors.responses`."""
+        """Displacements (2c × r) of the faces of each sector under face forces (2c × r) of each sector, and (n × n)
+        which of them belongs to sectors i and j."""
         columns = [self.displacements({sector: forces}) for sector in range(self._count)]
         places = range(self._count)
         which = np.arange(self._count**2).reshape(self._count, self._count)
         return [np.concatenate(faces[place : place + 2]) for place in places for faces in columns], which
 
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
-        """See `JoinedSectors.displacements`."""
+        """Displacements v_i (c, ...) of the interfaces 0 … n under face forces (2c, ...: low, high) of sectors."""
         sample = next(iter(sources.values()))
         right = [np.zeros((self._size, *sample.shape[1:])) for _ in range(self._count + 1)]
         for sector, force in sources.items():

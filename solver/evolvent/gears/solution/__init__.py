@@ -1,1 +1,1 @@
-"""Solved positions and pitches, certified: what a Python user of gears calls."""
+"""Solved positions and pitches, certified: functions for Python users of gears."""

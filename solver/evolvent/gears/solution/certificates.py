@@ -1,4 +1,4 @@
-"""What positions must fulfil before they count as results: balance of forces, and of energy over the pitch."""
+"""Conditions on positions that count as results: balance of forces, and of energy over the pitch."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ def balance_error(result: PositionResult) -> float:
 
 
 def pitch_imbalance(results: Sequence[PositionResult]) -> float:
-    """|input − output − friction work| / input over equal steps of a whole pitch, at one friction coefficient.
+    """Energy imbalance |input − output − friction work| / input over equal steps of a whole pitch, at one friction
+    coefficient.
 
     After a pitch the teeth are deflected as before it, so no energy is stored. What remains is the error of normals
     taken before deflection: it falls with the load, not with the mesh (7e-4 where the contact's half-width is 3 % of
@@ -50,7 +51,8 @@ def pitch_imbalance(results: Sequence[PositionResult]) -> float:
 
 
 def energy_imbalance(stored: ArrayLike, given: ArrayLike) -> Floats:
-    """The same of stored powers (n, ...) and torques of the pinion (n, ...) at n positions."""
+    """Energy imbalance of a pitch, over its input energy, from stored powers (n, ...) and torques of the pinion (n,
+    ...) at n positions."""
     return np.asarray(np.abs(np.sum(stored, axis=0)) / np.sum(np.abs(given), axis=0))
 
 
@@ -75,7 +77,8 @@ def certify_pitch(positions: Iterable[Sequence[PositionResult]]) -> None:
 
 
 def require_balance(imbalance: float, where: str) -> None:
-    """Raises PitchImbalance where it exceeds `BALANCE_LIMIT`. where: friction coefficient or torque of the pitch."""
+    """Raises PitchImbalance where an energy imbalance exceeds `BALANCE_LIMIT`. where: friction coefficient or torque of
+    the pitch."""
     if not imbalance <= BALANCE_LIMIT:
         raise PitchImbalance(
             f"the pitch {where}: wanted an energy balance within {BALANCE_LIMIT} of the input, found {imbalance:.2e}; "

@@ -24,7 +24,7 @@ from evolvent.gears.sweep.position_result import PositionResult
 LOG = logging.getLogger("evolvent")
 T = TypeVar("T")
 Observer = Callable[[SweptPosition], object]
-"""Called with each position once that is certified: archives it, or shows progress."""
+"""Function called with each position once it is certified: it archives the position, or shows progress."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class CertifiedPitch:
     """The positions of a pitch, on all ranks."""
 
     positions: tuple[SweptPosition, ...]
-    """In the order of their angles, each as it was solved last at each friction coefficient."""
+    """Positions in the order of their angles, each as it was solved last at each friction coefficient."""
     deflected: bool
     """Whether contact was searched again on deflected flanks."""
 
@@ -85,8 +85,8 @@ def certified(
 
 
 def balanced(solve: Callable[[bool], T], deflected: bool) -> T:
-    """What `solve` returns, on deflected flanks where it raises PitchImbalance without. deflected: whether the first
-    solution is on deflected flanks; there is no second one then."""
+    """Result of `solve`, repeated on deflected flanks where it raises PitchImbalance without. deflected: whether the
+    first solution is on deflected flanks; there is no second one then."""
     try:
         return solve(deflected)
     except PitchImbalance as imbalance:

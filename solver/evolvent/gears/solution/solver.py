@@ -37,9 +37,9 @@ class PitchSolution:
     """A certified pitch at one friction coefficient: k positions in equal steps, whose friction history is periodic."""
 
     friction: float
-    """Coulomb's coefficient μ."""
+    """Coulomb's coefficient of friction μ."""
     results: tuple[PositionResult, ...]
-    """(k,) of each position; forces and torques of a plane problem are per mm of face width."""
+    """Results (k,) of the positions; forces and torques of a plane problem are per mm of face width."""
     pressure: PitchPressure
     """Fitted peak pressures between the tip-edge zones."""
     width_factor: float
@@ -57,7 +57,8 @@ class PitchSolution:
 
     @property
     def transmission_error(self) -> Floats:
-        """r_b1 φ_1 − r_b2 φ_2 (k,) [mm], along the line of action; positive where the wheel lags behind the pinion."""
+        """Transmission error r_b1 φ_1 − r_b2 φ_2 (k,) [mm], along the line of action; positive where the wheel lags
+        behind the pinion."""
         return np.array([result.transmission_error for result in self.results])
 
     @property
@@ -188,7 +189,7 @@ def solve_pitches(
 
 
 def _cells_across(gears: GearModel, pressure: PitchPressure) -> float:
-    """See PitchSolution."""
+    """Elements across the fitted contact width 2b, median of all positions."""
     pinion, half_widths = gears.bodies[0], np.concatenate([cut.half_width for cut in pressure.cuts])
     return cells_across(half_widths, pinion.z, pinion.roll_length, pinion.gear.base_radius, pinion.mesh.order)
 

@@ -15,7 +15,7 @@ SLICE_WEIGHT = 0.5  # of distances along ξ beside those across the contact line
 
 @dataclass(frozen=True)
 class ContactPatch:
-    """Which of the q points of a position are pressed. All teeth are alike, and the patch moves on with the contact
+    """Pressed points among the q points of a position. All teeth are alike, and the patch moves on with the contact
     lines: so it is given relative to them.
 
     places: (q, 2), roll distance ξ times SLICE_WEIGHT and signed distance across the contact line [mm].
@@ -27,11 +27,11 @@ class ContactPatch:
 
     @staticmethod
     def of(geometry: ContactGeometry, pressure: Floats) -> ContactPatch:
-        """From the pressures (q,) at the points."""
+        """Contact patch from the pressures (q,) at the points."""
         return ContactPatch(_places(geometry), pressure > 0.0)
 
     def at(self, geometry: ContactGeometry) -> Bools:
-        """(q,) bool: the points of another position whose nearest point in this patch is pressed."""
+        """Points (q,) bool of another position whose nearest point in this patch is pressed."""
         return np.asarray(self.pressed[cKDTree(self.places).query(_places(geometry))[1]])
 
 

@@ -39,7 +39,7 @@ class FrictionHistory:
 
     @staticmethod
     def of(model: GearModel, contact: GearContact, equilibrium: Equilibrium) -> FrictionHistory:
-        """Of a converged state."""
+        """Friction history of a converged state."""
         geometry = contact.geometry
         pinion_rows, wheel_rows = (geometry.rows(gear)[0] for gear in Member)
         pinion, wheel = (geometry.flank_forces(gear, equilibrium.force) for gear in Member)
@@ -49,8 +49,8 @@ class FrictionHistory:
         return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
 
     def earlier(self, pitches: int) -> FrictionHistory:
-        """The same so many angular pitches earlier, where other teeth of both gears stand as these do. Teeth without
-        load are left out: the contact need not look at them at that time."""
+        """Friction history moved back by whole angular pitches, where other teeth of both gears stand as these do.
+        Teeth without load are left out: the contact need not look at them at that time."""
         d, angle, step = self.flux.shape[1], 2.0 * np.pi * pitches, np.array([pitches, 0])
         turns = [-gear.sign * angle / self.stand.pair.gears[gear].z for gear in Member]
         loaded = [_on_loaded_teeth(rows, forces) for rows, forces in zip(self.rows, self.forces)]
@@ -92,9 +92,9 @@ def previous_jumps(
 
 
 def previous_friction(geometry: ContactGeometry, history: FrictionHistory) -> Floats:
-    """(n, d−1) contact forces of then on the nodes of the present contact [N; per mm of width in 2D], in the tangent
-    planes of now: where the normals have turned, some of the normal forces, too. Forces on nodes that the present
-    contact does not have are left out."""
+    """Previous contact forces (n, d−1) on the nodes of the present contact [N; per mm of width in 2D], in the present
+    tangent planes: where the normals have turned, they contain some of the normal forces, too. Forces on nodes that the
+    present contact does not have are left out."""
     rows = geometry.rows(Member.PINION)[0]
     forces = np.zeros((len(rows), geometry.d))
     then, now = _shared_rows(history, rows)
@@ -105,7 +105,7 @@ def previous_friction(geometry: ContactGeometry, history: FrictionHistory) -> Fl
 
 
 def _on_loaded_teeth(rows: Ints, forces: Floats) -> Bools:
-    """(m,) bool: the rows of teeth that carry load."""
+    """Rows (m,) bool of teeth that carry load."""
     size = np.abs(forces).max(axis=1)
     return np.isin(rows[:, 0], rows[size > NO_LOAD * size.max(initial=0.0), 0])
 
@@ -116,9 +116,9 @@ def _have_equal_rows(histories: Sequence[FrictionHistory]) -> bool:
 
 
 def _jump(geometry: ContactGeometry, before: Stand, u1: Floats, u2: Floats) -> Floats:
-    """(n, d) local: w = R_1 u_1 − R_2 Πu_2 of the previous position, turned with the wheel to the present one. On
-    deflected flanks the velocity of their points has the rotation of displacements with their gears: there each is
-    turned with its own."""
+    """Elastic jump (n, d) in local frames, w = R_1 u_1 − R_2 Πu_2 of the previous position, turned with the wheel to
+    the present one. On deflected flanks the velocity of their points has the rotation of displacements with their
+    gears: there each is turned with its own."""
     d, pinion, wheel = geometry.d, Member.PINION, Member.WHEEL
     R1, R2 = (geometry.stand.rotation(gear, d) for gear in Member)
     if not geometry.is_deflected:
@@ -142,7 +142,8 @@ def _displacements(geometry: ContactGeometry, histories: Sequence[FrictionHistor
 
 
 def _shared_rows(history: FrictionHistory, rows: Ints) -> tuple[Ints, Ints]:
-    """Which of the history's rows of the pinion are among the `rows` (m, 2) of now, and which of these they are."""
+    """Indices of the history's rows of the pinion that are among the present `rows` (m, 2), and indices of these in
+    `rows`."""
     both = _row_keys(history.rows[Member.PINION]), _row_keys(rows)
     _, then, now = np.intersect1d(*both, assume_unique=True, return_indices=True)
     return then, now

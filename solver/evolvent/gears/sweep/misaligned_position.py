@@ -26,7 +26,7 @@ modules 32 nm and 0.16 %."""
 
 
 def misaligned_on(model: GearModel, shared: SharedPosition) -> SharedPosition | None:
-    """The same position without friction, with the wheel misaligned as in the model's pair.
+    """A known position without friction, solved again with the wheel misaligned as in the model's pair.
 
     shared: of the same gears at another misalignment, searched on undeflected flanks.
 

@@ -37,8 +37,8 @@ def sweep_on_ranks(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, comm: MPI.Comm, begin: int = 0,
     known: Mapping[int, KnownSolution] = NONE_KNOWN,
 ) -> Generator[SweptPosition, None, None]:
-    """`sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all ranks, which must close it
-    together where they leave it early."""
+    """Sweep of a pitch as by `sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all
+    ranks, which must close it together where they leave it early."""
     if comm.size == 1:
         yield from sweep_pitch(model, pitch, frictions, state, begin, known=known)
         return
@@ -95,8 +95,8 @@ class _RankedSweep:
             begin = numbers.stop
 
     def ahead(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
-        """The same for one friction coefficient. Rank 0 solves friction; rank 1 prepares, and starts each search where
-        the one before has led."""
+        """All positions from number `begin` on, for one friction coefficient. Rank 0 solves friction; rank 1 prepares,
+        and starts each search where the one before has led."""
         prepared: SharedPosition | None = None
         place = state
         for k in range(begin - 1, len(self.pitch.angles)):
@@ -141,8 +141,8 @@ class _RankedSweep:
     def _solved(
         self, numbers: range, state: SweepState, prepared: list[SharedPosition | None]
     ) -> list[SweptPosition]:
-        """These positions with the friction coefficients of this rank, none if it has none. prepared: the positions
-        without friction, None where there was no solution: then each rank searches by itself."""
+        """Positions `numbers` solved with the friction coefficients of this rank, none if it has none. prepared: the
+        positions without friction, None where there was no solution: then each rank searches by itself."""
         own = division(len(self.frictions), self.comm.size)[self.comm.rank]
         mine, swept = replace(state, histories=state.histories[own]), []
         for k, common in zip(numbers, prepared) if self.frictions[own] else ():
@@ -151,8 +151,8 @@ class _RankedSweep:
         return swept
 
     def _broadcast(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
-        """Rank `root`'s position on all ranks: without the gears, which all have; its compliance through shared memory,
-        only roughly where it is known by products, which all ranks can make."""
+        """Position prepared by rank `root`, on all ranks. It is sent without the gears, which all have; its compliance
+        goes through shared memory, or as its approximate matrix where all ranks can apply the compliance itself."""
         bare: tuple[GearContact, Equilibrium, tuple[UnsearchedOverlap, ...]] | None = None
         large: NearlyNormal | JumpCompliance | None = None
         if prepared is not None:

@@ -25,11 +25,11 @@ from evolvent.gears.sweep.position_search import KnownSolution
 from evolvent_meshes.arrays import Bools, Floats
 
 TOLERANCE = 1e-2
-"""Of the peak-to-peak transmission error: a position with a smaller error closes the pitch."""
+"""Error of the transmission error, over its peak-to-peak value, below which a position closes the pitch."""
 ROUNDING = 1e-5  # of the transmission error itself: less than that is what searches and Newton's method leave
 ROUNDS = 30
-"""At most. Steel teeth under a usual load are periodic within half a pitch. Wide helical ones that bend by a twentieth
-of a module may reduce the error by but a third a pitch, and need twelve."""
+"""Largest number of repeated pitches. Steel teeth under a usual load are periodic within half a pitch. Wide helical
+ones that bend by a twentieth of a module may reduce the error by but a third a pitch, and need twelve."""
 SLOWEST = 0.95  # largest ratio of changes from pitch to pitch: beyond it the error cannot be estimated from them
 
 
@@ -75,7 +75,7 @@ def is_periodic(errors: Sequence[Floats], pitch: Pitch) -> bool:
 
 
 def never_periodic(errors: Sequence[Floats], pitch: Pitch) -> NotConverged:
-    """The error to raise after the last round."""
+    """Error to raise where positions still change in the last round."""
     remaining = _remaining_error(np.array(errors), len(pitch.angles))
     return NotConverged(
         f"friction after {ROUNDS} more pitches: wanted transmission errors that are off by less than {TOLERANCE} of "
@@ -94,7 +94,7 @@ def one_pitch(swept: Sequence[SweptPosition]) -> list[SweptPosition]:
 
 
 def _renewed(first: SweptPosition, again: SweptPosition) -> SweptPosition:
-    """A position with what it has again, of some of its coefficients."""
+    """Position with the new results of some of its friction coefficients."""
     renewed = {result.friction: result for result in again.results}
     results = tuple(renewed.get(result.friction, result) for result in first.results)
     if len(first.state.histories) < len(first.results):  # read from an archive, which keeps that of the last position
@@ -105,14 +105,14 @@ def _renewed(first: SweptPosition, again: SweptPosition) -> SweptPosition:
 
 
 def transmission_errors(position: SweptPosition, frictions: Sequence[float]) -> Floats:
-    """Its transmission errors (frictions,) [mm], NaN for coefficients that it was not solved with."""
+    """Transmission errors (frictions,) of a position [mm], NaN for coefficients that it was not solved with."""
     errors = {result.friction: result.transmission_error for result in position.results}
     return np.array([errors.get(μ, np.nan) for μ in frictions])
 
 
 def _still_changing(errors: Sequence[Floats], pitch: Pitch, rubs: Bools) -> Bools:
-    """(frictions,) bool: those to go on with after these transmission errors. rubs: (frictions,) bool, those with
-    friction terms."""
+    """Whether to continue with each friction coefficient after these transmission errors, (frictions,). rubs:
+    (frictions,) whether it has friction terms."""
     if len(errors) < len(pitch.angles):
         return np.ones_like(rubs)
     if len(errors) == len(pitch.angles):

@@ -37,13 +37,13 @@ from evolvent_meshes.arrays import Bools
 HALVINGS = 4
 LOG = logging.getLogger("evolvent")
 Histories = tuple[FrictionHistory | None, ...]
-"""Of each friction coefficient; None before the first position, and without friction."""
+"""Friction history of each friction coefficient; None before the first position, and without friction."""
 NONE_KNOWN: Mapping[int, KnownSolution] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
 class SweepState:
-    """What the next position of a sweep depends on.
+    """State of a sweep from which the next position starts.
 
     extra: rotations of pinion and wheel beyond the nominal ones, where the last search was [rad].
     histories: friction history of each coefficient that was solved with.
@@ -63,11 +63,11 @@ class SweepState:
         return self.extra if self.course is None else self.course.at(angle)
 
     def of(self, coefficients: Bools) -> SweepState:
-        """The same for some of its friction coefficients, (frictions,) bool."""
+        """Sweep state of some of its friction coefficients, (frictions,) bool."""
         return replace(self, histories=tuple(compress(self.histories, coefficients)))
 
     def earlier(self, pitches: int) -> SweepState:
-        """The same so many angular pitches earlier."""
+        """Sweep state moved back by whole angular pitches."""
         histories = tuple(None if history is None else history.earlier(pitches) for history in self.histories)
         return replace(self, histories=histories, course=None)  # the course ends a pitch later
 
@@ -92,7 +92,7 @@ class SweptPosition:
     known: KnownSolution | None = None
 
     def of(self, coefficients: Bools) -> SweptPosition:
-        """The same for some of its friction coefficients, (frictions,) bool."""
+        """Position with some of its friction coefficients, (frictions,) bool."""
         return replace(self, results=tuple(compress(self.results, coefficients)), state=self.state.of(coefficients))
 
 
@@ -121,7 +121,7 @@ class Pitch:
 
 
 def uniform_pitch(z1: int, positions: int, pitches: int = 1) -> Pitch:
-    """`positions` equal steps over each angular pitch 2π/z_1."""
+    """Pitch of `positions` equal steps over each angular pitch 2π/z_1."""
     step = 2.0 * np.pi / z1 / positions
     return Pitch(tuple(float(step * k) for k in range(pitches * positions)), pitches)
 
@@ -137,7 +137,7 @@ def sweep_pitch(
 ) -> Iterator[SweptPosition]:
     """Solves pitch.angles[begin:] in turn. A position that fails is approached by up to four halvings of the step.
 
-    common: what the coefficients share of the first position, None where it is to be searched.
+    common: search and frictionless equilibrium of the first position, None where it is to be searched.
     known: number of a position -> how it was solved before.
 
     Raises NotConverged, with the angle and the friction coefficient.
@@ -171,7 +171,7 @@ def _position(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float,
     shared: SharedPosition | None, known: KnownSolution | None,
 ) -> SweptPosition:
-    """The position at an angle, in one step. Raises NotConverged, SearchError."""
+    """Position at an angle, solved in one step. Raises NotConverged, SearchError."""
     begin = time.perf_counter()
     if shared is None:
         shared = shared_position(model, angle, state.predicted(angle), frictions, state.patch, known=known)

@@ -1,4 +1,4 @@
-"""What is kept of a converged position at one friction coefficient."""
+"""Result of a converged position at one friction coefficient."""
 
 from __future__ import annotations
 
@@ -60,12 +60,12 @@ class PositionResult:
 
     @property
     def pressure(self) -> Floats:
-        """Averaged λ (n,) [MPa]."""
+        """Averaged contact pressure λ (n,) [MPa]."""
         return self.traction[:, 0]
 
     @property
     def transmission_error(self) -> float:
-        """r_b1 φ_1 − r_b2 φ_2 [mm]."""
+        """Transmission error r_b1 φ_1 − r_b2 φ_2 [mm]."""
         return self.stand.transmission_error
 
     def load_share(self, pair: int) -> float:
@@ -92,7 +92,8 @@ def position_result(
     model: GearModel, contact: GearContact, equilibrium: Equilibrium, friction: float, stiffness: float,
     frictionless_iterations: int,
 ) -> PositionResult:
-    """Of a converged state. stiffness: see PositionResult."""
+    """Result of a converged state. stiffness: tangent of the frictionless mesh along the line of action [N/mm; per mm
+    of width in 2D]."""
     geometry, k = contact.geometry, equilibrium.force.shape[1]
     torques = [float(np.sum(spin[:, :k] * equilibrium.force)) for spin in geometry.spins]
     weights, traction = contact.operator.averaged(equilibrium.traction)
@@ -128,16 +129,16 @@ def _loaded_rows(geometry: ContactGeometry, gear: Member, equilibrium: Equilibri
 
 @dataclass(frozen=True, eq=False)
 class NodalForces:
-    """Forces of n positions."""
+    """Forces on the flank nodes of a gear at n positions."""
 
     rows: Ints
-    """(k, 2) tooth and flank node that bear load at some position, ascending."""
+    """Tooth and flank node (k, 2) of the nodes that bear load at some position, ascending."""
     forces: Floats
-    """(n, k, d) in the gear's own frame [N; per mm of width in 2D]."""
+    """Forces (n, k, d) in the gear's own frame [N; per mm of width in 2D]."""
 
 
 def nodal_forces(results: Sequence[PositionResult], member: Member) -> NodalForces:
-    """Of the pinion's or the wheel's flanks."""
+    """Forces on the pinion's or the wheel's flank nodes at all positions."""
     pinion = member is Member.PINION
     rows = [each.pinion_rows if pinion else each.wheel_rows for each in results]
     forces = [each.pinion_forces if pinion else each.wheel_forces for each in results]

@@ -2,7 +2,7 @@
 
 Flanks are searched at given rotations of both gears, and the equilibrium turns one of them on. So the search is made
 again until it was made where the equilibrium is, and in a window that holds all of the contact. All friction
-coefficients share what is found.
+coefficients share its results.
 """
 
 from __future__ import annotations
@@ -33,21 +33,22 @@ RELOCATE = 1.7e-4
 smaller one but for its square over the curvature radius, 3e-8 modules. Searches are made at rotations that are whole
 multiples of twice this, at the nearest one to the solution: so that results do not depend on where a search starts."""
 NEAREST = 1.001
-"""Of half a multiple, at whose very end two searches could send each other back and forth."""
+"""Largest displacement of the flanks by the free rotation after which a search is accepted, over RELOCATE. It is a
+little above 1, since at the very end of an interval two searches could send each other back and forth."""
 NEAREST_AGAIN = 1.2
-"""The same where the search has been at a place before: on coarse meshes the solution jumps a little between two
-neighbouring places, so that each can send it to the other one."""
+"""Value of NEAREST where the search has been at a place before: on coarse meshes the solution jumps a little between
+two neighbouring places, so that each can send it to the other one."""
 FIRST_CONTACT = 0.25
-"""Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
+"""Fraction of the window that is assumed to press at first; Newton's method needs fewer steps from too few points."""
 ROUNDS = 8
 START = 1e-5
-"""Residual over the load of a frictionless state that is no result: friction starts from it, and the flanks are
+"""Residual, over the load, of a frictionless state that is no result: friction starts from it, and the flanks are
 searched where it leaves the gears. Newton's method comes there two or three iterations earlier."""
 
 
 @dataclass(frozen=True)
 class SearchedAt:
-    """Where a position was searched.
+    """Angle, rotations and window with which a position was searched.
 
     angle: of the pinion [rad].
     extra: rotations of pinion and wheel beyond the nominal ones [rad].
@@ -61,7 +62,7 @@ class SearchedAt:
 
 @dataclass(frozen=True)
 class RotationCourse:
-    """How the free rotation of the equilibrium goes on from position to position, so that a search starts near it.
+    """Free rotation of the equilibrium from position to position, to predict where a search starts.
 
     angle: of the pinion at the last position [rad].
     extra: rotations of pinion and wheel there beyond the nominal ones, in equilibrium without friction [rad].
@@ -73,12 +74,12 @@ class RotationCourse:
     rate: tuple[float, float] = (0.0, 0.0)
 
     def at(self, angle: float) -> tuple[float, float]:
-        """On a straight line through the last two positions [rad]."""
+        """Rotations of pinion and wheel [rad] at a pinion angle, on a straight line through the last two positions."""
         pinion, wheel = (value + rate * (angle - self.angle) for value, rate in zip(self.extra, self.rate))
         return pinion, wheel
 
     def followed_by(self, angle: float, extra: tuple[float, float]) -> RotationCourse:
-        """After one more position."""
+        """Course of the free rotation after one more position."""
         if angle == self.angle:
             return RotationCourse(angle, extra, self.rate)
         pinion, wheel = ((new - old) / (angle - self.angle) for new, old in zip(extra, self.extra))
@@ -87,7 +88,7 @@ class RotationCourse:
 
 @dataclass(frozen=True)
 class KnownSolution:
-    """How a position was solved: where it is solved again, with another friction history, it starts from there.
+    """Earlier solution of a position, from which it starts where it is solved again with another friction history.
 
     searched: where its flanks were searched.
     smooth: the solution without friction.
@@ -101,7 +102,7 @@ class KnownSolution:
 
 @dataclass(frozen=True)
 class SharedPosition:
-    """What all friction coefficients of a position share.
+    """Search, condensed system and frictionless equilibrium of a position, shared by all friction coefficients.
 
     contact: the flanks that face each other.
     system: their condensed system.
@@ -116,7 +117,7 @@ class SharedPosition:
 
     @cached_property
     def stiffness(self) -> float:
-        """Of the frictionless mesh, as in PositionResult [N/mm; per mm of width in 2D]."""
+        """Tangent stiffness of the frictionless mesh along the line of action [N/mm; per mm of width in 2D]."""
         normal, exact = normal_part(self.system), self.smooth
         if exact.residual > TOLERANCE * float(exact.force.sum()):
             exact = frictionless(normal, near=InitialGuess.of(exact))
@@ -129,7 +130,7 @@ class SharedPosition:
 
     @property
     def searched(self) -> SearchedAt:
-        """Where it was searched."""
+        """Angle, rotations and window of the search."""
         return SearchedAt(self.contact.stand.angle, self.contact.stand.extra, self.contact.geometry.half_width)
 
 
@@ -202,7 +203,7 @@ def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float])
 
 
 def _tolerance(model: GearModel, frictions: Sequence[float], exact: bool) -> float:
-    """Of the frictionless state: it is the result of coefficients without friction terms."""
+    """Tolerance of the frictionless state: it is the result of coefficients without friction terms."""
     return START if all(map(model.has_friction_terms, frictions)) and not exact else TOLERANCE
 
 
@@ -220,7 +221,7 @@ def course_after(model: GearModel, shared: SharedPosition, before: RotationCours
 
 
 def free_shift(model: GearModel, equilibrium: Equilibrium) -> float:
-    """Displacement [mm] of the flanks by that rotation."""
+    """Displacement [mm] of the flanks by the free rotation from the search to the equilibrium."""
     return float(equilibrium.motion[0]) * model.bodies[model.load.on].gear.base_radius
 
 
@@ -232,8 +233,8 @@ def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
 
 
 def _initially_pressed(geometry: ContactGeometry, before: ContactPatch | None) -> Bools:
-    """(q,) bool: the points that are taken for pressed at first. Those in the last position's contact patch; without
-    one, or where it has none of them, those near the contact lines."""
+    """Points that are assumed to press at first, (q,) bool: those in the last position's contact patch. Without one, or
+    where it has none of them, those near the contact lines."""
     pressed = None if before is None else before.at(geometry)
     if pressed is not None and pressed.any():
         return pressed

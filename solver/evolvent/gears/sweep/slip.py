@@ -17,7 +17,7 @@ NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not tak
 
 
 def slip_increment(geometry: ContactGeometry, before: PreviousJump, span: float) -> Floats:
-    """(n, d−1) slip [mm] since the previous position, Δφ = span [rad] before, without the part of the present elastic
+    """Slip (n, d−1) [mm] since the previous position, Δφ = span [rad] before, without the part of the present elastic
     displacements: nominal slip, change of the free rotations, and minus the elastic jump of then."""
     pair, rate = geometry.stand.pair, relative_velocity(geometry)
     ξ, ξ_before = geometry.roll_distance, geometry.roll_distance - pair.pinion.base_radius * span
@@ -42,13 +42,13 @@ def work_beyond_nominal(
 
 
 def _beyond_nominal(geometry: ContactGeometry, before: PreviousJump) -> Floats:
-    """(n, d−1) change of the free rotations up to the search, and minus the elastic jump of then [mm]."""
+    """Change (n, d−1) of the free rotations up to the search, and minus the previous elastic jump [mm]."""
     turned = [geometry.stand.extra[gear] - before.stand.extra[gear] for gear in Member]
     return sum(spin[:, 1:] * angle for spin, angle in zip(geometry.spins, turned)) - before.jump[:, 1:]
 
 
 def slip_direction(geometry: ContactGeometry) -> Floats:
-    """(q, d−1) unit tangent of the nominal slip where the slice is far enough from the pitch point to know it, else
+    """Unit tangent (q, d−1) of the nominal slip where the slice is far enough from the pitch point to know it, else
     zero."""
     module = geometry.stand.pair.pinion.normal_module
     far = np.abs(geometry.operator.shape @ geometry.roll_distance)[:, None] > NEAR_PITCH * module
@@ -56,14 +56,14 @@ def slip_direction(geometry: ContactGeometry) -> Floats:
 
 
 def nominal_direction(geometry: ContactGeometry) -> Floats:
-    """(q, d−1) unit tangent of the nominal slip, zero at the pitch point."""
+    """Unit tangent (q, d−1) of the nominal slip, zero at the pitch point."""
     v = geometry.operator.shape @ relative_velocity(geometry)[:, 1:]
     size = np.linalg.norm(v, axis=1, keepdims=True)
     return np.where(size > 0.0, v / np.where(size > 0.0, size, 1.0), 0.0)
 
 
 def slip_growth_direction(geometry: ContactGeometry) -> Floats:
-    """(n, d−1) unit tangent in which the nominal slip grows with ξ: contact travels along the transverse normal n_t,
+    """Unit tangent (n, d−1) in which the nominal slip grows with ξ: contact travels along the transverse normal n_t,
     and the pinion turns over the wheel about the pitch point, so this is e_z × n_t, at the pitch point too."""
     n = geometry.operator.frames[:, 0]
     along = np.zeros_like(n)

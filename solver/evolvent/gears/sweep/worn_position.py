@@ -22,7 +22,7 @@ errors within 3 nm of 5 µm; 24 searches instead of 400."""
 
 
 def worn_on(model: GearModel, shared: SharedPosition, pressed: Bools | None = None) -> SharedPosition | None:
-    """The same position with the present wear of the model's flanks and under its present torque.
+    """A known position, solved again with the present wear of the model's flanks and under its present torque.
 
     pressed: (q,) bool, points to start from, by default those that were pressed before.
 
@@ -44,7 +44,7 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: Bools | None = No
 
 
 def _first_solution(system: CondensedSystem, starts: Sequence[Bools | None]) -> Equilibrium | None:
-    """From the first of the starts, (q,) bool or None, that leads to a solution; None where none does."""
+    """Equilibrium from the first of the starts, (q,) bool or None, that leads to one; None where none does."""
     for start in (start for start in starts if start is not None):
         try:
             return frictionless(system, start if start.any() else None)

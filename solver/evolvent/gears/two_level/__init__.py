@@ -1,1 +1,1 @@
-"""A gear whose flanks are finer than its body: what fine cells change, strip by strip along the face."""
+"""Gears whose flanks are finer than their bodies: corrections by fine cells, strip by strip along the face."""

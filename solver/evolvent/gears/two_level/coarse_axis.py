@@ -25,7 +25,7 @@ class Axis:
 
     @staticmethod
     def of(corners: Floats, reach: float, samples: int) -> Axis:
-        """From the cells' corners (count + 1, 3) along one line, and how far patches extend [mm]."""
+        """Cells from their corners (count + 1, 3) along one line. reach: how far patches extend [mm]."""
         within = np.linalg.norm(corners[:, None] - corners, axis=2) < reach
         cells = range(len(corners) - 1)
         below = tuple(int(within[i, 1 : i + 1].sum()) for i in cells)
@@ -37,7 +37,7 @@ class Axis:
         return len(self.below)
 
     def extent(self, cells: Sequence[int]) -> tuple[int, int]:
-        """How many cells lie within reach below and above one of these, at most."""
+        """Largest numbers of cells within reach below and above one of these."""
         return max(self.below[i] for i in cells), max(self.above[i] for i in cells)
 
     @property
@@ -63,8 +63,8 @@ class Axis:
 
     @property
     def sampled(self) -> list[int]:
-        """Those of them that have a patch of their own: the middle one, or several, closer towards both ends, as a
-        polynomial through them wants it (Chebyshev)."""
+        """Cells between the blocks that have a patch of their own: the middle one, or several, closer towards both
+        ends, as a polynomial through them needs it (Chebyshev)."""
         cells = self.between
         if self.samples == 1 or len(cells) < 2:
             return [cells[len(cells) // 2]] if cells else []

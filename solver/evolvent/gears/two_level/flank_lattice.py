@@ -45,12 +45,12 @@ class FlankLattice:
 
     @property
     def radius(self) -> Floats:
-        """(2R + 1,) of the rows [mm]."""
+        """Radius (2R + 1,) of each row [mm]."""
         return np.hypot(self.points[:, 0, 0], self.points[:, 0, 1])
 
     @property
     def height(self) -> Floats:
-        """(2L + 1,) of the levels [mm]."""
+        """Height (2L + 1,) of each level [mm]."""
         return self.points[0, :, 2]
 
     def place(self, points: Floats) -> Ints:
@@ -60,13 +60,14 @@ class FlankLattice:
         return np.column_stack([rows, np.searchsorted(self.height, points[:, 2] - SAME)])
 
     def at(self, numbers: Ints) -> Floats:
-        """Its nodes with these numbers, (n, 3) [mm]."""
+        """Positions (n, 3) of the nodes with these numbers [mm]."""
         points = np.empty((self.nodes.size, 3))
         points[self.nodes.ravel()] = self.points.reshape(-1, 3)
         return points[numbers]
 
     def interpolation(self, points: Floats) -> sp.csr_matrix:
-        """(n, nodes) from values at the nodes to those at points (n, 3) of the flank, linear between four nodes."""
+        """Interpolation (n, nodes) from values at the nodes to those at points (n, 3) of the flank, linear between four
+        nodes."""
         radius = np.hypot(points[:, 0], points[:, 1])
         (row, along), (level, across) = _place(self.radius, radius), _place(self.height, points[:, 2])
         corners = [(i, j) for i in (0, 1) for j in (0, 1)]

@@ -1,4 +1,4 @@
-"""A flank refined in levels: the finest surface, and what each level changes in the compliance."""
+"""A flank refined in levels: the finest surface, and the correction of the compliance by each level."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ class FlankRefinement:
     levels: Sequence[FlankLevel]
 
     def bodies(self) -> Iterator[CoarseBody]:
-        """One a level: what is split to make it. Below the first level, only cells within reach of the flank are."""
+        """Coarse body of each level, whose cells are split to make the level. Below the first level, only cells within
+        reach of the flank are split."""
         mesh = self.mesh
         for level in self.levels:
             body = coarse_body(self.gear, mesh, self.material, level)
@@ -52,7 +53,7 @@ class FlankRefinement:
 
 
 def coarse_body(gear: GearParameters, mesh: MeshData, material: Material, level: FlankLevel) -> CoarseBody:
-    """A mesh of a sector, or of what is near its flank, to be split."""
+    """Coarse body from the mesh of a sector, or of the part near its flank, to be split."""
     along = np.full((len(mesh.cells), 3), level.rows)
     along[:, 2] = level.layers  # swept cells have their third axis along the face
     counts = split_counts(mesh, "flank", along, level.below)
@@ -84,8 +85,8 @@ class RefinedFlank:
     responses: Sequence[Mapping[Block, BlockResponse]]
 
     def levels(self, counts: Sequence[int]) -> dict[int, list[RefinedLevel]]:
-        """The first levels, as many as each of the counts says, the last one with the functionals of the contact. What
-        they have in common is there once."""
+        """First levels of the flank for each of the counts, the last one with the functionals of the contact. Common
+        levels exist once."""
         inner = [self._level(number, lambda each: each.inner) for number in range(max(counts) - 1)]
 
         def last(number: int) -> RefinedLevel:

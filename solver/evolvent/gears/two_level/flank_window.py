@@ -20,7 +20,7 @@ from evolvent_meshes.arrays import Floats, Ints, Reals
 
 @dataclass(frozen=True)
 class LevelWindow:
-    """What one level of all flanks does between some of their nodes (k,), tooth by tooth.
+    """Transfer and correction of one level of all flanks between some of their nodes (k,), tooth by tooth.
 
     transfer: (k, c) shape functions of the nodes of the level before.
     strips: its correction between them.
@@ -37,7 +37,7 @@ class LevelWindow:
 
     @cached_property
     def double(self) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-        """The same in double precision."""
+        """The transfer and its transpose in double precision."""
         return self.transfer, self.transfer.T.tocsr()
 
     @property
@@ -47,7 +47,7 @@ class LevelWindow:
         return 3 * R.data.nbytes + 4 * R.indices.nbytes + self.strips.nbytes
 
     def of(self, dtype: Any) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-        """The same in a precision."""
+        """The transfer and its transpose in a precision."""
         return self.single if dtype == np.float32 else self.double
 
 
@@ -70,9 +70,9 @@ class FlankWindow:
     """One gear's part of the compliance of a position (a `SurfaceCompliance`).
 
     teeth: its flanks, one a tooth pair.
-    levels: what each level changes between their nodes, from the coarsest to the finest.
+    levels: correction by each level between their nodes, from the coarsest to the finest.
     ring: the compliance of the coarse nodes.
-    roughly: makes a rough matrix of it.
+    roughly: makes an approximate matrix of it.
     """
 
     teeth: tuple[ToothWindow, ...]
@@ -81,7 +81,7 @@ class FlankWindow:
     roughly: Callable[[FlankWindow], NearlyNormal]
 
     def times(self, force: Reals) -> Reals:
-        """See `SurfaceCompliance.times`; of the precision of the forces."""
+        """Jumps (n, k) [mm] under forces (n, k) [N], in the precision of the forces."""
         parts = np.split(force, _ends(len(t.map.axes) for t in self.teeth))
         forces = np.concatenate([t.map.forces(f) @ t.turn for t, f in zip(self.teeth, parts)])
         u = self.moved(forces.astype(force.dtype))
@@ -101,17 +101,17 @@ class FlankWindow:
         return u
 
     def normal(self) -> FlankWindow:
-        """See `SurfaceCompliance.normal`."""
+        """Compliance between normal components alone."""
         teeth = [replace(t, map=JumpMap(t.map.projection, t.map.axes[:, :1])) for t in self.teeth]
         return replace(self, teeth=tuple(teeth))
 
     def nearly(self) -> NearlyNormal:
-        """See `SurfaceCompliance.nearly`."""
+        """Approximation as block matrix and modes, for preconditioning."""
         return self.roughly(self)
 
     @property
     def nbytes(self) -> int:
-        """See `SurfaceCompliance.nbytes`."""
+        """Memory of the ring's and the levels' parts [bytes]."""
         return self.ring.nbytes + sum(level.nbytes for level in self.levels)
 
     def smooth(self, modes: Floats) -> Floats:
@@ -125,7 +125,7 @@ class FlankWindow:
 
 
 def _ends(counts: Iterable[int]) -> Ints:
-    """Where all but the last of some parts end."""
+    """Ends of all but the last of some parts."""
     return np.cumsum(list(counts))[:-1]
 
 

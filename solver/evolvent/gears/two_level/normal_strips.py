@@ -1,7 +1,7 @@
-"""What fine cells change in the normal displacements of a swept flank under normal forces, between some of its nodes.
+"""Correction by fine cells of the normal displacements of a swept flank under normal forces, between some of its nodes.
 
 In the frames of the coarse layers the normals are alike from layer to layer, as the patches are. So each strip has one
-matrix of numbers, a ninth of its own size, and only what lies between the nodes of a position is put together.
+matrix of numbers, a ninth of its own size, and only the part between the nodes of a position is assembled.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from evolvent.gears.two_level.strips import StripCorrection, first_nodes, node_o
 from evolvent_meshes.arrays import Floats, Ints, Singles
 
 Indices = NDArray[np.int32]
-"""Half the memory of `Ints`."""
+"""32-bit indices, half the memory of `Ints`."""
 
 
 @dataclass(frozen=True)
 class NormalStrips:
-    """nᵀ S n of a flank's nodes.
+    """Normal part nᵀ S n of the correction S between a flank's nodes.
 
     correction: S.
     changes: (q·p, Q·P) of each of its strips, in single precision [mm/N].
@@ -33,7 +33,7 @@ class NormalStrips:
 
     @staticmethod
     def of(correction: StripCorrection, normals: Floats) -> NormalStrips:
-        """normals: (n, 3) at the nodes."""
+        """Normal part of a correction. normals: (n, 3) at the nodes."""
         n = turned(normals[correction.numbers], -correction.angle[:, None])
         changes = []
         for strip in correction.strips:
@@ -45,8 +45,8 @@ class NormalStrips:
         return NormalStrips(correction, tuple(changes))
 
     def among(self, nodes: Ints, apart: float) -> sp.csr_matrix:
-        """Between some nodes (k,), different ones, no more than so many coarse layers apart along the face: (k, k)
-        [mm/N]."""
+        """Normal correction (k, k) [mm/N] between different nodes (k,), no more than so many coarse layers apart along
+        the face."""
         number = np.full(self.correction.size, -1, dtype=np.int32)
         number[nodes] = np.arange(len(nodes), dtype=np.int32)
         parts = list(self._parts(number[self.correction.numbers], apart * self.correction.per_layer))
@@ -72,5 +72,6 @@ class NormalStrips:
 
 
 def _levels(corner: tuple[int, int], size: tuple[int, int]) -> Ints:
-    """Of the nodes of a patch with levels and rows of a number, from the first node of its strip's first patch on."""
+    """Level of each node of a patch with levels and rows of a number, counted from the first node of its strip's first
+    patch."""
     return np.repeat(corner[0] + np.arange(size[0]), size[1])

@@ -17,7 +17,7 @@ class RefinedLevel:
     """A flank finer than the one before.
 
     transfer: (n, c) shape functions of the level before at the nodes.
-    correction: what its cells change, in the frame of tooth 0.
+    correction: that by its cells, in the frame of tooth 0.
     normals: (n, 3) at the nodes of the flank.
     """
 

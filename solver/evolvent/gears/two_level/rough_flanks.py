@@ -1,7 +1,7 @@
-"""The compliance of fine flanks roughly, as a matrix, for the preconditioner of Newton steps.
+"""Approximate compliance matrix of fine flanks, for the preconditioner of Newton steps.
 
-Of each tooth by itself the normal components only, which are few numbers; how it bends under smooth loads, and what
-couples teeth, are modes of all components. Good to a few per cent.
+Each tooth by itself has normal components only, which are few numbers; its bending under smooth loads and the
+coupling of teeth are modes of all components. Good to a few per cent.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ SMOOTH = ((0, 0), (0, 1), (1, 0), (1, 1), (0, 2), (2, 0))
 of a frictional Newton step of Yang's pair at standard with none, the first three, all six: 12, 8, 7. Tangential loads
 of the same kind save but one product in thirty."""
 COUPLED = 3e-3
-"""Of the largest coupling between teeth: what is smaller is left out."""
+"""Fraction of the largest coupling between teeth below which a coupling is left out."""
 TOGETHER = 250
-"""Nodes of a group, at most; those of neighbouring groups are coupled. With 1000, 500, 250, 120, the first position of
-23/81 teeth, 2.5 N·m on 5 mm of face, takes 504, 506, 510, 598 products and 23, 13, 7, 4 s of factoring."""
+"""Largest number of nodes of a group; those of neighbouring groups are coupled. With 1000, 500, 250, 120, the first
+position of 23/81 teeth, 2.5 N·m on 5 mm of face, takes 504, 506, 510, 598 products and 23, 13, 7, 4 s of factoring."""
 
 
 @dataclass(frozen=True)
 class RoughFlanks:
-    """The flanks of a gear.
+    """Flanks of a gear, from which approximate compliance matrices are made.
 
     flank: of the coarse sector.
     levels: from the coarsest to the finest.
@@ -44,7 +44,7 @@ class RoughFlanks:
     levels: Sequence[RefinedLevel]
 
     def nearly(self, window: FlankWindow) -> NearlyNormal:
-        """The compliance of a window, roughly."""
+        """Approximate compliance of a window, as block matrix and modes."""
         coupling, size = window.ring.leading(COUPLED)
         bending = [self._bending(t.nodes[0], C) for t, C in zip(window.teeth, window.ring.own)]
         modes = np.hstack([coupling, block_diag(*bending)])
@@ -63,7 +63,7 @@ class RoughFlanks:
         return np.asarray(solve_triangular(cholesky(P.T @ moved, lower=True), moved.T, lower=True).T)
 
     def _block(self, tooth: ToothWindow, C: Floats, bending: Floats) -> sp.csr_matrix:
-        """(n, n) normal compliance of a tooth's part of the contact without its bending, between nodes that are near
+        """Normal compliance (n, n) of a tooth's part of the contact without its bending, between nodes that are near
         along the face [mm/N]. Nodes further apart hardly change how well it preconditions."""
         lattice = self.levels[-1].correction.lattice
         x = tooth.map.opposite(lattice.at(tooth.nodes[-1]))
@@ -102,7 +102,7 @@ class RoughFlanks:
 
     @cached_property
     def _heights(self) -> Floats:
-        """Of the layers' limits in the coarse flank [mm]."""
+        """Heights of the layers' limits in the coarse flank [mm]."""
         return np.unique(np.round(self.flank.points[:, 2], 9))[::2]
 
 
@@ -118,7 +118,7 @@ def _groups(z: Floats, near: float, least: float) -> tuple[float, list[Ints]]:
 
 
 def _between(N: sp.csr_matrix, S: sp.csr_matrix | Singles, M: sp.csr_matrix) -> Singles:
-    """N S Mᵀ, dense."""
+    """Product N S Mᵀ as a dense matrix."""
     rows, columns = np.unique(N.indices), np.unique(M.indices)
     among = S[rows][:, columns]
     dense = among.toarray() if sp.issparse(among) else among

@@ -1,4 +1,4 @@
-"""What fine cells change in the compliance of a swept flank, as products: patch by patch along strips of the face.
+"""Correction of the compliance of a swept flank by fine cells, applied patch by patch along strips of the face.
 
 Displacements and forces are components in the frames of the coarse layers, which turn with the helix. In them congruent
 patches along the face have the same matrix, so that those of one strip, the layers of one row of coarse cells, are one
@@ -20,7 +20,7 @@ from evolvent_meshes.arrays import Bools, Floats, Ints, Reals
 
 
 class StripCorrection:
-    """S of a flank's n nodes, in the frame of tooth 0.
+    """Correction S of the compliance between a flank's n nodes, in the frame of tooth 0.
 
     lattice: of the nodes.
     per_layer: levels of nodes in a coarse layer.
@@ -38,18 +38,18 @@ class StripCorrection:
 
     @property
     def size(self) -> int:
-        """n."""
+        """Number n of nodes."""
         return self.numbers.size
 
     def among(self, nodes: Sequence[Ints]) -> LoadedStrips:
-        """Between some nodes of each of some teeth, different ones of a tooth."""
+        """Correction between some nodes of each of some teeth, different ones of a tooth."""
         return LoadedStrips.of(self, nodes)
 
 
 @dataclass(frozen=True)
 class LoadedStrips:
-    """S between some nodes (k,) of some teeth: the patches that have some of them. The teeth do not feel each other,
-    but share the products.
+    """Correction S between some nodes (k,) of some teeth: the patches that have some of them. It does not couple teeth,
+    but they share the products.
 
     size: of the lattices of all teeth together.
     place: (k,) the nodes in them.
@@ -70,7 +70,7 @@ class LoadedStrips:
 
     @staticmethod
     def of(whole: StripCorrection, nodes: Sequence[Ints]) -> LoadedStrips:
-        """nodes: of each tooth, different ones."""
+        """Correction between some nodes. nodes: of each tooth, different ones."""
         place = np.empty(whole.size, dtype=np.int32)
         place[whole.numbers.ravel()] = np.arange(whole.size)
         own = np.concatenate([place[each] for each in nodes])
@@ -89,7 +89,7 @@ class LoadedStrips:
 
     @property
     def nbytes(self) -> int:
-        """Memory [bytes]; the patches' responses are the flank's."""
+        """Memory [bytes] without the patches' responses, which belong to the flank."""
         return sum(each.nbytes for each in (self.place, self.angle, self.sources, self.around))
 
     def times(self, forces: Reals) -> Reals:
@@ -112,8 +112,8 @@ class LoadedStrips:
 
 
 def first_nodes(strip: Strip, loaded: Bools, per_layer: int) -> Ints:
-    """Of the patches of a strip with nodes that are `loaded` (teeth, levels, rows): by how many places each is away
-    from the first patch on the first tooth."""
+    """Distances in places of the patches of a strip with nodes that are `loaded` (teeth, levels, rows) from the first
+    patch on the first tooth."""
     (level, row), (q, p), (teeth, levels, rows) = strip.source, strip.sources, loaded.shape
     used = np.zeros((teeth, strip.layers), dtype=bool)
     for up in range(q):
@@ -124,18 +124,18 @@ def first_nodes(strip: Strip, loaded: Bools, per_layer: int) -> Ints:
 
 
 def node_offset(first: tuple[int, int], rows: int) -> int:
-    """Place of a level and row."""
+    """Place of the node at a level and row."""
     return first[0] * rows + first[1]
 
 
 def node_places(first: Ints, size: tuple[int, int], rows: int) -> Ints:
-    """(m, Q·P) of all nodes of m patches of Q levels × P rows, given by their first nodes (m,)."""
+    """Places (m, Q·P) of all nodes of m patches of Q levels × P rows, given by their first nodes (m,)."""
     levels, across = np.arange(size[0])[:, None], np.arange(size[1])
     return np.asarray(first[:, None] + (levels * rows + across).ravel())
 
 
 def _places(patches: Sequence[tuple[Ints, tuple[int, int]]], rows: int) -> Ints:
-    """Of all nodes of patches, given by their first nodes (m,) and their levels and rows."""
+    """Places of all nodes of patches, given by their first nodes (m,) and their levels and rows."""
     parts = [node_places(first, size, rows).ravel() for first, size in patches]
     return np.concatenate(parts).astype(np.int32) if parts else np.zeros(0, dtype=np.int32)
 

@@ -37,7 +37,7 @@ class Strip:
     layers: int
 
     def trimmed(self, fraction: float) -> Strip:
-        """Without the outer levels and rows that move by less than this fraction of what those moving most do
+        """Strip without the outer levels and rows that move by less than this fraction of those that move most
         (Frobenius norms)."""
         Q, P = self.moved
         change = self.change.reshape(-1, Q, P, 3)
@@ -50,18 +50,18 @@ class Strip:
         )
 
     def blocks(self) -> Reals:
-        """`change` as (q, p, 3, Q, P, 3)."""
+        """Displacements `change` as (q, p, 3, Q, P, 3)."""
         return self.change.reshape(*self.sources, 3, *self.moved, 3)
 
 
 def _larger(values: Floats, fraction: float) -> slice:
-    """From the first to the last value above a fraction of the largest."""
+    """Slice from the first to the last value above a fraction of the largest."""
     above = np.flatnonzero(values > fraction * values.max(initial=0.0))
     return slice(int(above[0]), int(above[-1]) + 1) if len(above) else slice(0, 1)
 
 
 def symmetric_strips(strips: Sequence[Strip], per_layer: int) -> list[Strip]:
-    """½ (D + Dᵀ), rounded to single precision, from D.
+    """Strips of ½ (D + Dᵀ), rounded to single precision, from D.
 
     strips: of D; their sources hold each node once. per_layer: levels of nodes from one patch of a strip to the next.
     """
@@ -100,20 +100,20 @@ class _Patches:
         return _Patches(strip, source, boxes([each.start for each in strips], [each.moved for each in strips]))
 
     def moving(self, a: int) -> Ints:
-        """The patches that move some of the sources of patch a, by their strips."""
+        """Indices of the patches that move some of the sources of patch a, in the order of their strips."""
         low = np.maximum(self.moved[:, 0], self.source[a, 0])
         high = np.minimum(self.moved[:, 1], self.source[a, 1])
         return np.flatnonzero((low < high).all(axis=1))
 
     def around(self, a: int) -> tuple[tuple[int, int], ...]:
-        """Strip and levels above patch a of each of them: two patches of a strip for which this is the same are
-        alike."""
+        """Strip and levels above patch a of each patch that moves its sources: two patches of a strip for which this is
+        the same are alike."""
         near = self.moving(a)
         above = self.source[near, 0, 0] - self.source[a, 0, 0]
         return tuple(zip(self.strip[near].tolist(), above.tolist()))
 
     def symmetric(self, strips: Sequence[Strip], a: int, layers: int) -> Strip:
-        """½ (D + Dᵀ) of the forces on patch a, and on those above it that are alike."""
+        """Strip ½ (D + Dᵀ) of the forces on patch a, and on those above it that are alike."""
         near = self.moving(a)
         boxes = np.concatenate([self.moved[a : a + 1], self.source[near]])
         low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
@@ -132,7 +132,7 @@ class _Patches:
 
 
 def _part(box: Ints) -> tuple[slice, slice]:
-    """Of levels and rows, from the first to before the last of a box (2, 2)."""
+    """Slices of levels and rows, from the first to before the last of a box (2, 2)."""
     (level, row), (top, end) = box
     return slice(level, top), slice(row, end)
 

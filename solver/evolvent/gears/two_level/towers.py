@@ -1,4 +1,4 @@
-"""What fine cells change in a flank's compliance: patches about coarse cells, at some places of the profile only.
+"""Correction of a flank's compliance by fine cells: patches about coarse cells, at some places of the profile only.
 
 Under the screw motion of the helicoid all layers along the face are congruent, so that all but those near the ends of
 the face share their response. Along the profile the response changes slowly: that of a row is interpolated between
@@ -39,7 +39,7 @@ SAMPLES = 4
 """Rows between those near root and tip that have a patch of their own. Largest error of a correction, of its largest
 entry, with three, four, five (Yang's pinion, at the ends of its face, where it is largest): 2.8, 1.0, 0.7 %."""
 COST = 1.5
-"""Power of its fine cells with which the time of a patch grows: 0.6 s for 530, 2.9 s for 1,330."""
+"""Power of the number of a patch's fine cells with which its time grows: 0.6 s for 530, 2.9 s for 1,330."""
 
 Block = tuple[range, range]
 """Rows and layers of coarse cells that are loaded in one patch."""
@@ -53,7 +53,7 @@ def reach_of(flank: FlankLattice, base_helix_angle: float) -> float:
 
 @dataclass(frozen=True)
 class Response:
-    """What changes under the loads on a block of cells.
+    """Correction of the displacements under the loads on a block of cells.
 
     change: (P, Q, d, p, q, d) displacements of P × Q nodes of the lattice by unit forces on p × q of them, in the frame
         that turns with the flank's normal, in single precision [mm/N].
@@ -66,7 +66,8 @@ class Response:
     offset: Ints
 
     def by_row(self, nodes: int, cells: int) -> list[Response]:
-        """One for the loads on each row of so many cells, of so many rows of nodes; the last one may have one more."""
+        """Response to the loads on each row of so many cells, of so many rows of nodes; the last one may have one
+        more."""
         result = []
         for cell, (a, b) in enumerate(pairwise([*(nodes * np.arange(cells)), self.change.shape[3]])):
             before = np.array([self.before[0] + a, self.before[1]])
@@ -74,32 +75,35 @@ class Response:
         return result
 
     def by_layer(self, nodes: int, cells: int) -> list[Response]:
-        """The same for each layer of cells."""
+        """Response to the loads on each layer of so many cells, of so many levels of nodes; the last one may have one
+        more."""
         return [each._swapped() for each in self._swapped().by_row(nodes, cells)]
 
     def _swapped(self) -> Response:
-        """With levels for rows."""
+        """Response with rows and levels exchanged."""
         return Response(np.transpose(self.change, (1, 0, 2, 4, 3, 5)), self.before[::-1], self.offset[::-1])
 
 
 @dataclass(frozen=True)
 class BlockResponse:
-    """What changes under the loads on a block of cells, of the functionals that are wanted."""
+    """Corrections of the required functionals under the loads on a block of cells."""
 
     plain: Response | None
-    """Of displacements: where a finer level follows, or contact is computed on the gear without the pressure."""
+    """Correction of displacements: where a finer level follows, or contact is computed on the gear without the
+    pressure."""
     nitsche: Response | None
-    """Of the functionals of Nitsche's pressure side: where contact is computed on the gear that carries it."""
+    """Correction of the functionals of Nitsche's pressure side: where contact is computed on the gear that carries
+    it."""
 
     @property
     def inner(self) -> Response:
-        """What a finer level takes."""
+        """Response for a finer level."""
         assert self.plain is not None
         return self.plain
 
     @property
     def contact(self) -> Response:
-        """What contact on this level takes."""
+        """Response for contact on this level."""
         return self.inner if self.nitsche is None else self.nitsche
 
 
@@ -108,8 +112,8 @@ class LoadedPatch:
     """The patch of a block of coarse cells.
 
     block: the cells with forces.
-    patch: what lies within reach of them.
-    cost: roughly, beside those of other patches of any flank.
+    patch: cells within reach of them.
+    cost: estimated, relative to that of other patches of any flank.
     """
 
     block: Block
@@ -143,7 +147,7 @@ class Towers:
 
     @cached_property
     def axes(self) -> tuple[Axis, Axis]:
-        """Along the profile and along the face."""
+        """Coarse cells along the profile and along the face."""
         rows, layers = self._coarse.cells
         corners = self._coarse.points[::2, ::2]
         return (
@@ -162,7 +166,7 @@ class Towers:
         return self._body.fine
 
     def patches(self) -> list[LoadedPatch]:
-        """All that `correction` needs."""
+        """All patches that `correction` needs."""
         profile, face = self.axes
         rows, layers = ([*axis.own, *(range(i, i + 1) for i in axis.sampled)] for axis in (profile, face))
         return [self._patch((each, those)) for those in layers for each in rows]
@@ -175,7 +179,7 @@ class Towers:
         return LoadedPatch(block, patch, twice * cells**COST)
 
     def correction(self, responses: Mapping[Block, Response]) -> StripCorrection:
-        """From the `response` of each of the `patches`, all plain or all of Nitsche's functionals."""
+        """Correction from the `response` of each of the `patches`, all plain or all of Nitsche's functionals."""
         _, face = self.axes
         strips = []
         for block in face.own:
@@ -199,7 +203,7 @@ class Towers:
             yield row, replace(known[0], change=change)
 
     def response(self, loaded: LoadedPatch) -> BlockResponse:
-        """Of one of the `patches`. Raises NotPositiveDefinite, OutOfMemory."""
+        """Response of one of the `patches`. Raises NotPositiveDefinite, OutOfMemory."""
         low, high = self._loaded_nodes(loaded.block)
 
         def within(points: Floats) -> Bools:
@@ -256,11 +260,12 @@ class Towers:
 
     @cached_property
     def _angle(self) -> Floats:
-        """(levels,) of the frames of the coarse layers, in which each level of fine nodes is [rad]."""
+        """Rotation (levels,) of the frame of the coarse layer in which each level of fine nodes is [rad]."""
         layer = np.minimum(np.arange(self._fine.nodes.shape[1]) // self._nodes[1], self._coarse.cells[1] - 1)
         return np.asarray(self._twist * self._coarse.height[2 * layer])
 
     def _normal_angle(self, row: int) -> float:
-        """By which the flank's normal turns along the profile up to the first corner of a row of coarse cells [rad]."""
+        """Angle by which the flank's normal turns along the profile up to the first corner of a row of coarse cells
+        [rad]."""
         r = self._coarse.radius[2 * row]
         return float(np.sqrt(max(r**2 - self._base_radius**2, 0.0)) / self._base_radius)

@@ -31,7 +31,8 @@ class TwoLevelRing:
         self.coarse, self.flank, self.levels, self.pitch = coarse, flank, tuple(levels), pitch
 
     def jumps(self, parts: Sequence[MappedNodes]) -> FlankWindow:
-        """See `Compliance.jumps`."""
+        """Compliance E C Eᵀ of the parts' maps E between nodes of the finest level, applied to forces without a
+        matrix."""
         nodes = [[part.nodes for part in parts]]
         levels = []
         for level in reversed(self.levels):
@@ -44,7 +45,8 @@ class TwoLevelRing:
         return FlankWindow(tuple(teeth), tuple(levels[::-1]), ring, self._rough.nearly)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        """See `Compliance.apply`."""
+        """Displacements (..., k_out, 3) [mm] of `rows_out` (k_out, 2) under `forces` (..., k_in, 3) [N] on `rows_in`. A
+        row is a tooth and a node of the finest flank."""
         rows = np.unique(np.concatenate([rows_in, rows_out]), axis=0)  # tooth by tooth
         key = rows @ [self.size, 1]
         of, to = (np.searchsorted(key, each @ [self.size, 1]) for each in (rows_in, rows_out))
@@ -61,7 +63,8 @@ class TwoLevelRing:
         return result.reshape(*forces.shape[:-2], len(rows_out), 3)
 
     def observed_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
-        """See `ChainedCompliance.observed_displacements`; forces act on the sector through its coarse flank."""
+        """Displacements (n, k, 3; sector's own frame; mm) of the k observed nodes of each tooth under `forces` (n,
+        k_in, 3; N), which act on the sector through its coarse flank. Raises ValueError where none were condensed."""
         return self.coarse.observed_displacements(*self.on_coarse_nodes(rows_in, forces))
 
     def on_coarse_nodes(self, rows: Ints, forces: Floats) -> tuple[Ints, Floats]:
@@ -81,7 +84,7 @@ class TwoLevelRing:
 
     @property
     def size(self) -> int:
-        """Nodes of the finest flank."""
+        """Number of nodes of the finest flank."""
         return self.levels[-1].correction.size
 
     def _turn(self, tooth: int) -> Floats:

@@ -29,57 +29,57 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class MidpointStep:
-    """A step from a state; its unknown is the position at its middle."""
+    """Equations of a step of the midpoint rule; the unknown is the position at the midpoint."""
 
     system: LinearSystem
-    """What moves."""
+    """Mass, damping and stiffness."""
     state: MotionState
-    """At its begin. The acceleration is not used."""
+    """State at the beginning of the step. The acceleration is not used."""
     length: float
-    """h [s]."""
+    """Step length h [s]."""
     stretch: float
-    """s > 0."""
+    """Stretch s > 0."""
     unstretched: Floats
-    """e (m,), the part of Δz along motions that V does not depend on."""
+    """Part e (m,) of Δz along motions that V does not depend on."""
 
     @cached_property
     def matrix(self) -> Floats:
-        """A (m, m)."""
+        """Matrix A (m, m) of the step."""
         return self._inertia * self.system.mass + np.diag(self._rate * self.system.damping + self.system.stiffness)
 
     @cached_property
     def known(self) -> Floats:
-        """b (m,)."""
+        """Known forces b (m,) of the step."""
         n = self.state
         inertia = self._inertia * n.position + self._rate * n.velocity - self.correction * self.unstretched
         return self.system.mass @ inertia + self._rate * self.system.damping * n.position
 
     @property
     def correction(self) -> float:
-        """κ [1/s²]."""
+        """Correction κ of the energy [1/s²]."""
         return 2.0 * (1.0 - 1.0 / self.stretch) / self.length**2
 
     def after(self, position: Floats) -> MotionState:
-        """The state at its end, from z̄ (m,)."""
+        """State at the end of the step from the position z̄ (m,) at its midpoint."""
         return self.ended(2.0 * position - self.state.position)
 
     def ended(self, position: Floats) -> MotionState:
-        """The state at its end, from z_{n+1} (m,); its acceleration is the mean one."""
+        """State at the end of the step from the position z_{n+1} (m,); the acceleration is the mean one."""
         n = self.state
         velocity = self._rate * (position - n.position) - n.velocity
         return MotionState(position, velocity, (velocity - n.velocity) / self.length)
 
     def damped(self, after: MotionState) -> float:
-        """h v̄ᵀD v̄, what damping takes until its end."""
+        """Energy h v̄ᵀD v̄ that damping dissipates in the step."""
         mean = 0.5 * (self.state.velocity + after.velocity)
         return self.length * float(mean @ (self.system.damping * mean))
 
     @property
     def _inertia(self) -> float:
-        """4/(sh²)."""
+        """Factor 4/(sh²) of the mass."""
         return 4.0 / (self.stretch * self.length**2)
 
     @property
     def _rate(self) -> float:
-        """2/h."""
+        """Factor 2/h of the damping."""
         return 2.0 / self.length

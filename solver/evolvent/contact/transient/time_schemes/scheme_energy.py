@@ -25,17 +25,17 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class SchemeEnergy:
-    """Of a system of m coordinates in steps of one length."""
+    """Energy of a system of m coordinates in steps of equal length."""
 
     system: LinearSystem
-    """What moves."""
+    """Mass, damping and stiffness."""
     scheme: TimeScheme
-    """Weights."""
+    """Weights of the time scheme."""
     length: float
-    """h [s]."""
+    """Step length h [s]."""
 
     def of(self, state: MotionState, before: Floats) -> float:
-        """E. before: a_ (m,)."""
+        """Energy E of a state. before: acceleration a_ (m,) one step before."""
         h, α, a = self.length, self.scheme.alpha, state.acceleration
         d = a - before
         kinetic = 0.5 * self._square(state.velocity + 0.5 * α * h * d)
@@ -44,10 +44,10 @@ class SchemeEnergy:
         return kinetic + h**2 / 8.0 * spread + h**2 / 16.0 * α * (1.0 - α**2) * self._square(d) + elastic
 
     def taken(self, before: Floats, after: MotionState) -> float:
-        """L of a step, never negative. before: a_{n−1} (m,); after: the state at its end."""
+        """Energy L that a step dissipates, never negative. before: a_{n−1} (m,); after: the state at its end."""
         α = self.scheme.alpha
         return -α * (1.0 - α) ** 2 / 16.0 * self.length**2 * self._square(after.acceleration - before)
 
     def _square(self, x: Floats) -> float:
-        """xᵀM x."""
+        """Square xᵀM x in the mass."""
         return float(x @ (self.system.mass @ x))

@@ -14,13 +14,13 @@ import numpy as np
 from scipy.optimize import root_scalar
 
 AIM = 1e-11
-"""Of the largest energy: what a step may leave."""
+"""Accepted excess of the energy after a step, over the largest energy."""
 OVERSHOOT = 1.25
-"""Of the first guess of ln s, so that as a rule the root is on this side of it."""
+"""Factor on the first guess of ln s, so that the root usually lies between it and 0."""
 FARTHEST = 20.0
-"""|ln s| of the stretches that are tried."""
+"""Largest |ln s| of the stretches that are tried."""
 ROUNDING = 1e-14
-"""Of ln s: how near stretches are told apart."""
+"""Difference of ln s below which stretches are equal."""
 
 
 def try_stretches(excess: Callable[[float], float], first: float, slope: float) -> None:

@@ -27,142 +27,142 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class TimeScheme:
-    """Weights of the method."""
+    """Weights of the method of Wood, Bossak and Zienkiewicz."""
 
     spectral_radius: float
-    """ρ_∞: 1 keeps what is too fast for the step, 0 takes it out in one step."""
+    """Spectral radius ρ_∞: 1 keeps motions too fast for the step, 0 removes them in one step."""
 
     @property
     def alpha(self) -> float:
-        """α."""
+        """Weight α of the old acceleration."""
         return (self.spectral_radius - 1.0) / (self.spectral_radius + 1.0)
 
     @property
     def gamma(self) -> float:
-        """γ."""
+        """Weight γ of the new acceleration in the velocity."""
         return 0.5 - self.alpha
 
     @property
     def beta(self) -> float:
-        """β."""
+        """Weight β of the new acceleration in the position."""
         return 0.25 * (1.0 - self.alpha) ** 2
 
     @property
     def error_constant(self) -> float:
-        """c: a step is off by c h² (a_{n+1} − a_n), to leading order (adaptive_steps.py)."""
+        """Error constant c: a step is off by c h² (a_{n+1} − a_n), to leading order (adaptive_steps.py)."""
         return self.beta + 0.5 * self.alpha - 1.0 / 6.0
 
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """What moves: m coordinates."""
+    """Mass, damping and stiffness of m coordinates."""
 
     mass: Floats
-    """M (m, m)."""
+    """Mass matrix M (m, m)."""
     damping: Floats
-    """Diagonal of D (m,)."""
+    """Diagonal of the damping matrix D (m,)."""
     stiffness: Floats
-    """Diagonal of K (m,)."""
+    """Diagonal of the stiffness matrix K (m,)."""
 
 
 @dataclass(frozen=True)
 class MotionState:
-    """A motion at one time."""
+    """Position, velocity and acceleration at one time."""
 
     position: Floats
-    """z (m,)."""
+    """Position z (m,)."""
     velocity: Floats
-    """v (m,)."""
+    """Velocity v (m,)."""
     acceleration: Floats
-    """a (m,), which the method keeps beside the motion: z̈ at t + αh, to second order."""
+    """Acceleration a (m,) of the method: z̈ at t + αh, to second order."""
 
 
 class StepEquations(Protocol):
-    """A step of any method: A z = p + b, at the time at which it takes the forces p."""
+    """Equations A z = p + b of a step of any method, at the time at which it takes the forces p."""
 
     @property
     def system(self) -> LinearSystem:
-        """What moves."""
+        """Mass, damping and stiffness."""
         ...
 
     @property
     def state(self) -> MotionState:
-        """At its begin."""
+        """State at the beginning of the step."""
         ...
 
     @property
     def length(self) -> float:
-        """h [s]."""
+        """Step length h [s]."""
         ...
 
     @property
     def matrix(self) -> Floats:
-        """A (m, m)."""
+        """Matrix A (m, m) of the step."""
         ...
 
     @property
     def known(self) -> Floats:
-        """b (m,)."""
+        """Known forces b (m,) of the step."""
         ...
 
     def after(self, position: Floats) -> MotionState:
-        """The state at its end, from z (m,)."""
+        """State at the end of the step, from z (m,)."""
         ...
 
 
 @dataclass(frozen=True)
 class TimeStep:
-    """A step of the method from a state."""
+    """Equations of a step of the method from a state."""
 
     system: LinearSystem
-    """What moves."""
+    """Mass, damping and stiffness."""
     scheme: TimeScheme
-    """Weights."""
+    """Weights of the method."""
     state: MotionState
-    """At its begin."""
+    """State at the beginning of the step."""
     length: float
-    """h [s]."""
+    """Step length h [s]."""
 
     @staticmethod
     def unused(system: LinearSystem, scheme: TimeScheme) -> TimeStep:
-        """For what needs none: the state at a start."""
+        """Step without motion, as the initial state needs one."""
         nothing = np.zeros(len(system.stiffness))
         return TimeStep(system, scheme, MotionState(nothing, nothing, nothing), 1.0)
 
     @cached_property
     def matrix(self) -> Floats:
-        """A (m, m)."""
+        """Matrix A (m, m) of the step."""
         diagonal = self._rate * self.system.damping + self.system.stiffness
         return self._inertia * self.system.mass + np.diag(diagonal)
 
     @cached_property
     def known(self) -> Floats:
-        """b (m,)."""
+        """Known forces b (m,) of the step."""
         inertia = self._inertia * self._drifted - self.scheme.alpha * self.state.acceleration
         return self.system.mass @ inertia + self.system.damping * (self._rate * self._drifted - self._coasted)
 
     def after(self, position: Floats) -> MotionState:
-        """The state at its end, at z_{n+1} (m,)."""
+        """State at the end of the step, from z_{n+1} (m,)."""
         acceleration = (position - self._drifted) / (self.scheme.beta * self.length**2)
         return MotionState(position, self._coasted + self.scheme.gamma * self.length * acceleration, acceleration)
 
     @property
     def _inertia(self) -> float:
-        """(1 − α)/(βh²)."""
+        """Factor (1 − α)/(βh²) of the mass."""
         return (1.0 - self.scheme.alpha) / (self.scheme.beta * self.length**2)
 
     @property
     def _rate(self) -> float:
-        """γ/(βh)."""
+        """Factor γ/(βh) of the damping."""
         return self.scheme.gamma / (self.scheme.beta * self.length)
 
     @property
     def _drifted(self) -> Floats:
-        """z_{n+1} without a_{n+1}."""
+        """Position z_{n+1} without the contribution of a_{n+1}."""
         n, h = self.state, self.length
         return n.position + h * n.velocity + h**2 * (0.5 - self.scheme.beta) * n.acceleration
 
     @property
     def _coasted(self) -> Floats:
-        """v_{n+1} without a_{n+1}."""
+        """Velocity v_{n+1} without the contribution of a_{n+1}."""
         return self.state.velocity + self.length * (1.0 - self.scheme.gamma) * self.state.acceleration

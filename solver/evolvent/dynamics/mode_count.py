@@ -30,6 +30,6 @@ def expected_modes(
 
 
 def _wave_speeds(modulus: float, nu: float, density: float) -> tuple[float, float]:
-    """Of shear and pressure waves [mm/s]. density: [t/mm³]."""
+    """Speeds of shear and pressure waves [mm/s]. density: [t/mm³]."""
     shear = 0.5 * modulus / (1.0 + nu)
     return math.sqrt(shear / density), math.sqrt(2.0 * shear * (1.0 - nu) / (1.0 - 2.0 * nu) / density)

@@ -1,4 +1,4 @@
-"""The sector mesh on which a gear's modes are computed: its own where that is small, else a coarse one.
+"""The sector mesh on which a gear's modes are computed: the gear's own mesh where that is small, else a coarse one.
 
 Natural modes up to the mesh frequency's harmonics are as long as the gear: they need no flank that resolves a contact.
 """

@@ -12,9 +12,9 @@ as if all steps before had been as long. Position, velocity and the equation of 
 no more of the past than that equation. So its balance is exact of the next step, too, with the energy that the same
 state has in steps of the new length.
 
-The error of a step is that of contact/transient/adaptive_steps.py, over the energy of the vibration, the modes, and the
-static rest and contact of both gears together: under a load at rest, the speed at which they would swing back without
-it.
+The error of a step is that of contact/transient/adaptive_steps.py, over the energy of the vibration, the modes, the
+residual static compliance of both gears and the contact together: under a load at rest, the speed at which they would
+swing back without it.
 """
 
 from __future__ import annotations

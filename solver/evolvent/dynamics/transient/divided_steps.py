@@ -1,11 +1,11 @@
 """Division of the interval between two positions of a pair into equal time steps.
 
-Each time step is 2⁻ᵏ of that interval, and begins at a multiple of its own length: halves may become quarters anywhere, and
-quarters halves after two of them. So every position of the table is the end of a step, and the ends between them repeat
-with the mesh as the positions do.
+Each time step is 2⁻ᵏ of that interval, and begins at a multiple of its own length: halves may become quarters anywhere,
+and quarters halves after two of them. So every position of the table is the end of a step, and the ends between them
+repeat with the mesh as the positions do.
 
-The error of a step (changed_length.py) goes with the square of its length. One with more than the tolerance is
-repeated at half its length, and a step is doubled only where the error is less than an eighth of it: it is then about half the
+The error of a step (changed_length.py) goes with the square of its length. One with more than the tolerance is repeated
+at half its length, and a step is doubled only where the error is less than an eighth of it: it is then about half the
 tolerance, so that lengths stay for many steps.
 """
 

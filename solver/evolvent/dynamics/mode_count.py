@@ -1,4 +1,4 @@
-"""How many natural modes a gear has up to a frequency, from its size alone: Weyl's law with its term of the boundary.
+"""Number of natural modes of a gear up to a frequency, from its size alone: Weyl's law with its term of the boundary.
 
 A body has about as many waves of each kind, of shear and of pressure with the wave number k = 2πf/c, as have room in
 it: A k²/4π + L k/4π in a section of the area A and the free rim L in plane strain, V k³/6π² + S k²/16π in space.
@@ -15,7 +15,7 @@ from evolvent_meshes.gears.gear import GearParameters
 def expected_modes(
     gear: GearParameters, elastic: tuple[float, float], density: float, highest: float, plane: bool
 ) -> float:
-    """Modes up to a frequency [Hz] of a gear in plane strain or in space; each of a pair counts.
+    """Number of modes up to a frequency [Hz] of a gear in plane strain or in space; each of a pair counts.
 
     elastic: Young's modulus [MPa] and Poisson's ratio. density: [kg/m³].
     """

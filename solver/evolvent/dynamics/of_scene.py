@@ -56,7 +56,7 @@ def refusals(scene: Scene) -> list[str]:
 
 
 def backlash_problem(scene: Scene) -> InputProblem | None:
-    """Why the vibration of a scene cannot be computed with its backlash; None where it can."""
+    """Input problem of a scene whose vibration cannot be computed with its backlash; None where it can."""
     section, problem = scene.dynamics or DynamicsSection(), gear_problem(scene)
     if missing := unnamed_backlash(problem.pair, section.backlash_um):
         return missing

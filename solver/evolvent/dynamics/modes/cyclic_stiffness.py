@@ -75,8 +75,8 @@ class CyclicStiffness:
         return CyclicInverse(self._inside, across, cho_factor(self._face(phase), lower=True), across.shape[0])
 
     def negative(self, phase: complex) -> int:
-        """How many eigenvalues of K(θ) are negative: all are of the low face, as the interior was factored (Wittrick
-        and Williams, Q. J. Mech. Appl. Math. 24 (1971) 263-284)."""
+        """Number of negative eigenvalues of K(θ): all are of the low face, as the interior was factored (Wittrick and
+        Williams, Q. J. Mech. Appl. Math. 24 (1971) 263-284)."""
         return int(np.count_nonzero(np.linalg.eigvalsh(self._face(phase)) < 0.0))
 
     def _face(self, phase: complex) -> Numbers:

@@ -87,7 +87,7 @@ def harmonics(sectors: int) -> range:
 
 
 def modes_below(sector: SectorMatrices, sectors: int, highest: float) -> list[int]:
-    """How many modes each harmonic has below a frequency [rad/s], pairs counted once.
+    """Number of modes of each harmonic below a frequency [rad/s], pairs counted once.
 
     Raises NotPositiveDefinite where the interior alone, with its cut faces held, vibrates below it; OutOfMemory.
     """

@@ -1,4 +1,4 @@
-"""From time steps of one length to those of another, and the error of a step.
+"""Conversion of a state to time steps of another length, and the error of a step.
 
 Between two steps the scheme keeps a state, the acceleration a_n in it, and that of the step before, a_{n−1}. Their
 difference is in proportion to the length of the step, and a_n lags behind the motion by α (a_n − a_{n−1}). A step that
@@ -46,6 +46,6 @@ def motion_energy(system: LinearSystem, state: MotionState) -> float:
 
 
 def step_error(step: TimeStep, end: MotionState, energy: float) -> float:
-    """√(eᵀM e)/h over √2E of a step, e = c h² (a_{n+1} − a_n). energy: E > 0, the largest so far."""
+    """Error √(eᵀM e)/h over √2E of a step, e = c h² (a_{n+1} − a_n). energy: E > 0, the largest so far."""
     e = step.scheme.error_constant * step.length * (end.acceleration - step.state.acceleration)
     return float(np.sqrt(e @ (step.system.mass @ e) / (2.0 * energy)))

@@ -74,7 +74,7 @@ class SearchedContact:
 
     @cached_property
     def _unsearched(self) -> tuple[UnsearchedOverlap, ...]:
-        """Where flanks overlap undeformed outside the window."""
+        """Overlaps of the undeformed flanks outside the window."""
         return unsearched_overlaps(self.contact.geometry, self.teeth)
 
     def overlap_outside(self, pair: MovingPair, found: Equilibrium) -> bool:
@@ -96,7 +96,7 @@ class PairStep:
     """One time step of a pair with m modes."""
 
     pair: MovingPair
-    """The pair."""
+    """Gear pair with its inertia."""
     step: TimeStep
     """Time step of modes and ψ (m + 1), from the state at its start."""
 
@@ -134,7 +134,7 @@ class PairStep:
         return self.step.after(np.append(q, ψ))
 
     def _turned(self, at: SearchedContact) -> Floats:
-        """H' (n·k, 1)."""
+        """Jumps H' (n·k, 1) by a unit δ with the modes eliminated."""
         return (at.turned - at.modes @ self._push)[:, None]
 
     def _jump(self, at: SearchedContact) -> Floats:
@@ -148,16 +148,16 @@ class PairStep:
 
     @cached_property
     def _resistance(self) -> Floats:
-        """D' (1, 1)."""
+        """Coefficient D' (1, 1) of δ with the modes eliminated."""
         m, D = self.pair.count, self.step.matrix
         return D[m:, m:] - D[m:, :m] @ self._push[:, None]
 
     @cached_property
     def _push(self) -> Floats:
-        """D_q⁻¹ D_qψ (m,)."""
+        """Coupling D_q⁻¹ D_qψ (m,) of the modes to ψ."""
         return self.step.matrix[: self.pair.count, self.pair.count] / self._modal
 
     @cached_property
     def _modal(self) -> Floats:
-        """D_q (m,)."""
+        """Diagonal D_q (m,) of the step's matrix for the modes."""
         return np.diag(self.step.matrix)[: self.pair.count]

@@ -47,11 +47,11 @@ class PairMoment:
     rate: float
     """Rate of the transmission error [mm/s]."""
     residuals: Residuals
-    """Largest residuals of the balances of these time steps."""
+    """Largest residuals of the balances of the time steps from the position before."""
     energies: StepEnergies
-    """Energies of these time steps together."""
+    """Energies of the time steps from the position before, together."""
     steps: StepsTaken
-    """Number, lengths, errors and mesh forces of these time steps."""
+    """Number, lengths, errors and mesh forces of the time steps from the position before."""
 
 
 @dataclass(frozen=True)

@@ -79,7 +79,7 @@ class StepEnergies:
     given: float
     """Work of the contact on modes and ψ."""
     friction: float
-    """Energy lost to friction."""
+    """Energy lost to friction in the contact."""
     stored: float
     """Energy stored by the residual static compliance of both gears and by the contact."""
     damping: float

@@ -34,7 +34,7 @@ class QuasiStaticStart:
     history: FrictionHistory | None
     """Friction history; None without friction."""
     patch: ContactPatch | None
-    """Contact patch of the equilibrium; None where nothing touches."""
+    """Contact patch of the equilibrium."""
 
     def at(self, time_step: float) -> PairState:
         """Initial state of a transient. time_step: between two positions [s]."""

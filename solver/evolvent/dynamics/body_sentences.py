@@ -1,4 +1,4 @@
-"""Sentences on what a pair's vibration leaves out of its gear bodies."""
+"""Sentences on the vibration of gear bodies that the oscillator of a pair leaves out."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ bodies)."""
 
 
 def bodies_said(drive: Drive, slowest: float, fastest: float) -> list[str]:
-    """What a reader has to know of the gear bodies at speeds of the pinion between two [r/min]."""
+    """Sentences on what the model of the gear bodies leaves out, at pinion speeds between two [r/min]."""
     if drive.settings.bodies is not None:
         return body_resonances(drive, slowest, fastest)
     return [

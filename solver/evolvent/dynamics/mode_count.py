@@ -1,4 +1,4 @@
-"""How many natural modes a gear has up to a frequency, from its size alone: Weyl's law with its term of the boundary.
+"""Number of natural modes of a gear up to a frequency, from its size alone: Weyl's law with its term of the boundary.
 
 A body has about as many waves of each kind, of shear and of pressure with the wave number k = 2πf/c, as have room in
 it: A k²/4π + L k/4π in a section of the area A and the free rim L in plane strain, V k³/6π² + S k²/16π in space.
@@ -15,7 +15,7 @@ from evolvent_meshes.gears.gear import GearParameters
 def expected_modes(
     gear: GearParameters, elastic: tuple[float, float], density: float, highest: float, plane: bool
 ) -> float:
-    """Modes up to a frequency [Hz] of a gear in plane strain or in space; each of a pair counts.
+    """Number of modes up to a frequency [Hz] of a gear in plane strain or in space; each of a pair counts.
 
     elastic: Young's modulus [MPa] and Poisson's ratio. density: [kg/m³].
     """
@@ -30,6 +30,6 @@ def expected_modes(
 
 
 def _wave_speeds(modulus: float, nu: float, density: float) -> tuple[float, float]:
-    """Of shear and pressure waves [mm/s]. density: [t/mm³]."""
+    """Speeds of shear and pressure waves [mm/s]. density: [t/mm³]."""
     shear = 0.5 * modulus / (1.0 + nu)
     return math.sqrt(shear / density), math.sqrt(2.0 * shear * (1.0 - nu) / (1.0 - 2.0 * nu) / density)

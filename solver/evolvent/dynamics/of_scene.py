@@ -1,4 +1,4 @@
-"""From the section [dynamics] to the plain data that the rooms of `dynamics` are given."""
+"""Vibration settings and operating point from the section [dynamics] of a scene."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def check_bodies(scene: Scene) -> None:
 
 
 def refusals(scene: Scene) -> list[str]:
-    """What `check_vibration` says of backlash and bodies; none where it says nothing."""
+    """Messages of `check_vibration` on backlash and bodies; none where it raises nothing."""
     found = [str(problem)] if (problem := backlash_problem(scene)) else []
     try:
         check_bodies(scene)
@@ -56,7 +56,7 @@ def refusals(scene: Scene) -> list[str]:
 
 
 def backlash_problem(scene: Scene) -> InputProblem | None:
-    """Why the vibration of a scene cannot be computed with its backlash; None where it can."""
+    """Input problem of a scene whose vibration cannot be computed with its backlash; None where it can."""
     section, problem = scene.dynamics or DynamicsSection(), gear_problem(scene)
     if missing := unnamed_backlash(problem.pair, section.backlash_um):
         return missing
@@ -72,7 +72,7 @@ def backlash_problem(scene: Scene) -> InputProblem | None:
 
 
 def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
-    """What the section says, with what follows from the gears where it says nothing."""
+    """Settings of a vibration from the section, with those that follow from the gears where it leaves them open."""
     backlash = geometric_backlash(pair) if section.backlash_um is None else 1e-3 * section.backlash_um
     series = math.inf if section.series_stiffness_N_per_um is None else 1e3 * section.series_stiffness_N_per_um
     return DriveSettings(
@@ -82,8 +82,8 @@ def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
 
 
 def operating_point(scene: Scene) -> OperatingPoint | None:
-    """Under whose mesh force the contact is computed; None where it is computed under the constant torque.
-    Raises as `check_vibration`."""
+    """Operating point under whose mesh force the contact is computed; None where it is computed under the constant
+    torque. Raises as `check_vibration`."""
     section = scene.dynamics
     if section is None or section.operating_rpm is None:
         return None

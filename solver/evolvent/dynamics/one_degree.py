@@ -26,17 +26,18 @@ class OneDegree:
     """The pair as one mass on its mesh."""
 
     mass: float
-    """m [t]."""
+    """Mass m [t]."""
     stiffer: float
-    """δ [mm/N]: the compliance that the mesh has in statics and not in motion."""
+    """Compliance δ [mm/N] that the mesh has in statics and not in motion."""
     bore: float
-    """h [mm/N]: how far the bores run ahead of the mass where the mesh force is below the load."""
+    """Lead h [mm/N] of the bores over the mass, per force by which the mesh force is below the load."""
     next_frequency: float
-    """ω [rad/s] of the bodies' own vibration on the mesh that is left out: the lowest; infinite for rigid bodies."""
+    """Lowest natural frequency ω [rad/s] of the bodies on the mesh that is left out; infinite for rigid bodies."""
 
 
 def one_degree(system: SmallSystem, stiffness: float, mesh: int = 0) -> OneDegree:
-    """A small system on one of its meshes, whose mean static stiffness between held bores is given [N/mm].
+    """One degree of freedom for a small system on one of its meshes. stiffness: mean static one of the mesh between
+    held bores [N/mm].
 
     Raises ValueError where the shapes give way more than the whole mesh.
     """

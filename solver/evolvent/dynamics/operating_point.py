@@ -1,8 +1,8 @@
-"""The mesh force of a pair that runs at one speed, on flanks as they are: what contact and wear are computed under.
+"""Mesh force of a pair at its operating speed, on the flanks as they are: contact and wear are computed under it.
 
 Excitation, oscillator and motion follow from the condensed gears and the flanks' charts. At the first flanks the motion
-is that of a pair which has run up to the speed, or down to it; at later ones, such as worn flanks, it is what the last
-motion becomes.
+is that of a pair which has run up to the speed, or down to it; at later ones, such as worn flanks, it continues the
+last motion.
 """
 
 from __future__ import annotations
@@ -45,49 +45,49 @@ Charts = tuple[FlankChart | None, FlankChart | None]
 """Deviations of pinion and wheel flank; None: as designed."""
 Motion = SteadyState | Settled
 SLOWEST, FASTEST = 1.0 / 6.0, 1.6
-"""Where a pair that runs up or down comes from, over its natural speed."""
+"""Speeds at which a run-up and a run-down begin, over the natural speed."""
 RUN_SPEEDS = 200
-"""Speeds on its way: 0.4 % of the natural speed apart near resonance, a tenth of its peak's width at a damping ratio of
-0.03."""
+"""Speeds of a run-up or run-down: 0.4 % of the natural speed apart near resonance, a tenth of its peak's width at a
+damping ratio of 0.03."""
 SAMPLES = 240
-"""Of the mesh force in a pitch, at least."""
+"""Fewest samples of the mesh force in a pitch."""
 LEAST_FORCE = 1e-3
-"""Of the static one. Where flanks part the contact is solved under this force: none at all would leave open where the
-gears stand."""
+"""Least mesh force under which contact is computed, over the static one: where flanks separate, no force at all would
+leave the position of the gears open."""
 
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Where an operation begins."""
+    """Initial state of an operation on given flanks."""
 
     state: Floats
-    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    """Displacement s [mm] and velocity ṡ [mm/s] of the oscillator (2,) at phase 0."""
     forces: tuple[float, float]
     """Smallest and largest mesh force over the static one."""
     positions: Positions | None = None
-    """This rank's, on the same condensed gears; None: they are searched anew."""
+    """This rank's searched positions, on the same condensed gears; None: they are searched anew."""
 
     def without_positions(self) -> Start:
-        """On gears that are condensed anew."""
+        """Initial state for gears that are condensed anew."""
         return Start(self.state, self.forces)
 
 
 @dataclass(frozen=True, eq=False)
 class Operation:
-    """A pair that runs at a speed."""
+    """Vibration of a pair at one speed, and its mesh force."""
 
     excitation: MeshExcitation
-    """Of its mesh."""
+    """Excitation by the mesh."""
     drive: Drive
-    """Its oscillator."""
+    """Oscillator of the pair."""
     period: float
-    """Of the mesh [s]."""
+    """Mesh period [s]."""
     motion: Motion
-    """Where its vibration has settled."""
+    """Motion after the vibration has settled."""
     paths: tuple[History, ...]
-    """Each mesh period after which the motion repeats; sixteen where it does not."""
+    """Histories of the mesh periods after which the motion repeats; of sixteen where it does not."""
     load: GearLoad
-    """The mesh force of a mesh period, the mean or the largest of these, as a torque that repeats with the mesh."""
+    """Mesh force over a mesh period, the mean or the largest of `paths`, as a torque that repeats with the mesh."""
     lifted: float
     """Share of the mesh period in which `load` is `LEAST_FORCE`, because the force is less."""
     positions: Positions | None
@@ -95,7 +95,7 @@ class Operation:
 
     @property
     def start(self) -> Start:
-        """Where the operation goes on from on nearly the same flanks."""
+        """Initial state of the next operation, on nearly the same flanks."""
         return Start(self.state, self.forces, self.positions)
 
     @property
@@ -106,20 +106,20 @@ class Operation:
 
     @property
     def heaviest_torque_share(self) -> float:
-        """Largest mesh force over that of the heaviest torque of the force surface, beyond which this goes on straight;
-        NaN where the mesh is a stiffness."""
+        """Largest mesh force over that of the heaviest torque of the force surface, above which the surface is
+        extrapolated linearly; NaN where the mesh is a stiffness."""
         if self.drive.settings.mesh != "force_surface":
             return math.nan
         return self.forces[1] * self.drive.model.load / float(self.excitation.loaded.forces[-1])
 
     @property
     def speed(self) -> float:
-        """Of the pinion [r/min]."""
+        """Speed of the pinion [r/min]."""
         return 60.0 / (self.drive.teeth * self.period)
 
     @property
     def state(self) -> Floats:
-        """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+        """Displacement s [mm] and velocity ṡ [mm/s] of the oscillator (2,) at phase 0."""
         return self.motion.state
 
     @property
@@ -130,30 +130,30 @@ class Operation:
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """A speed, and what the mesh force at it depends on beside the flanks."""
+    """Operating speed of a pair, with the settings of its vibration."""
 
     settings: DriveSettings
     """Inertia, damping, backlash, and the model of the mesh."""
     speed: float
-    """Of the pinion [r/min]."""
+    """Speed of the pinion [r/min]."""
     coming: Literal["up", "down"]
-    """From lower or from higher speeds, where the motion depends on it."""
+    """Direction of approach to the speed, from lower or from higher ones, where the motion depends on it."""
     shares: tuple[float, ...]
     """Torques of the force surface over the pair's, ascending; 1 among them."""
     positions: int
-    """Of the pitch, for the excitation."""
+    """Positions of the pitch for the excitation."""
     of_several: Literal["mean", "largest"] = "mean"
-    """The force at each phase where the motion repeats after several meshes: the mean wears as they do together, the
-    largest is safe for stresses."""
+    """Mesh force at each phase where the motion repeats after several mesh periods: their mean, which gives the wear of
+    all together, or their largest, which is safe for stresses."""
 
     def on(self, model: GearModel, charts: Charts, comm: MPI.Comm, before: Start | None = None) -> Operation:
-        """The operation of condensed gears; their own torque is the static one. Collective.
+        """Operation of condensed gears; their own torque is the static one. Collective.
 
         Where the mesh force has stayed within some of the torques of the force surface, those are solved alone, and
         more of them where it leaves these.
 
-        charts: all that is missing of the designed flanks.
-        before: on nearly the same flanks; None: the pair has just come to the speed.
+        charts: all deviations from the designed flanks, wear included.
+        before: state of an operation on nearly the same flanks; None: the pair has just come to the speed.
 
         Raises NotConverged, SearchError, NoForceSurface, NoSteadyState.
         """
@@ -178,7 +178,7 @@ class OperatingPoint:
     def _loaded(
         self, model: GearModel, shares: tuple[float, ...], angles: Floats, comm: MPI.Comm, kept: Positions | None
     ) -> tuple[LoadedMesh, Positions | None]:
-        """The pitch under some of the torques, and its positions in 2D. kept: searched before."""
+        """Loaded mesh of a pitch under some of the torques, and its positions in 2D. kept: searched before."""
         torques = self._torques(model, shares)
         if model.bodies[0].d == 2:
             return loaded_mesh_again(model, torques, angles, comm, kept)
@@ -214,12 +214,12 @@ class OperatingPoint:
         return together(comm, lambda: tuple(position(i) for i in numbers))
 
     def _torques(self, model: GearModel, shares: tuple[float, ...]) -> list[float]:
-        """[N·mm]."""
+        """Torques of the force surface on the whole face [N·mm]."""
         return [share * model.load.torque * model.width_factor for share in shares]
 
     def _arrived(self, pair: Drive, period: float) -> Motion:
-        """The motion of a pair that has run up, or down, to the speed; one that is slower, or faster, than where it
-        would come from settles from rest."""
+        """Motion of a pair that has run up, or down, to the speed. One that is slower, or faster, than where it would
+        come from settles from rest."""
         other = (SLOWEST if self.coming == "up" else FASTEST) * pair.natural_speed
         if (self.speed <= other) == (self.coming == "up"):
             return settled(pair.model, period, static_state(pair.model))
@@ -232,7 +232,7 @@ class OperatingPoint:
 
 
 def _followed(pair: Drive, period: float, before: Floats) -> Motion:
-    """What a motion becomes where the excitation has changed a little."""
+    """Motion after a small change of the excitation, continued from the state before."""
     try:
         found = steady_state(pair.model, period, before)
     except NoSteadyState:
@@ -243,7 +243,7 @@ def _followed(pair: Drive, period: float, before: Floats) -> Motion:
 
 
 def _bounded(motion: Motion, speed: float) -> Motion:
-    """The motion. Raises NoSteadyState where it grows beyond measure."""
+    """Motion as given. Raises NoSteadyState where it grows beyond measure."""
     if isinstance(motion, Settled) and motion.escaped:
         raise NoSteadyState(
             f"vibration at {speed:g} r/min: wanted a motion that stays bounded, found one that grows beyond measure, "
@@ -254,7 +254,7 @@ def _bounded(motion: Motion, speed: float) -> Motion:
 
 
 def _paths(pair: Drive, period: float, motion: Motion) -> tuple[History, ...]:
-    """The mesh periods of a motion."""
+    """Histories of the mesh periods of a motion."""
     repeats = motion.repeats or LONGEST_REPEAT if isinstance(motion, Settled) else 1
     return tuple(histories(pair.model, period, motion.state, repeats, np.arange(SAMPLES) / SAMPLES))
 
@@ -262,8 +262,8 @@ def _paths(pair: Drive, period: float, motion: Motion) -> tuple[History, ...]:
 def _course(
     gears: GearPair, pair: Drive, paths: tuple[History, ...], of_several: Callable[..., Floats]
 ) -> tuple[TorqueCourse, float]:
-    """The force of these mesh periods over the static one, and the share of it that is lifted to LEAST_FORCE.
-    of_several: reduces theirs, (periods, phases), along the first axis."""
+    """Mesh force of these mesh periods over the static one, and the share of the period in which it is raised to
+    LEAST_FORCE. of_several: reduces their forces, (periods, phases), along the first axis."""
     phases = np.arange(SAMPLES) / SAMPLES
     force = of_several([np.interp(phases, path.phases, path.force) for path in paths], axis=0) / pair.model.load
     low = force < LEAST_FORCE

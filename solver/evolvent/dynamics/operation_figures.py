@@ -1,4 +1,4 @@
-"""Figures of a pair that runs at one speed, and what they become as it wears."""
+"""Figures of a pair at its operating speed, and their change with wear."""
 
 from __future__ import annotations
 
@@ -18,41 +18,41 @@ class OperationFigures:
     """A pair at its operating speed: operation.json."""
 
     speed_rpm: float
-    """Of the pinion."""
+    """Speed of the pinion."""
     natural_speed_rpm: float
-    """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness."""
+    """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness."""
     mean_stiffness_N_per_um: float
-    """Mesh stiffness of the whole face under the static torque, mean over the pitch, with what gives way in series: the
+    """Mesh stiffness of the whole face under the static torque, mean over the pitch, with the series compliance: the
     secant one where dynamics.mesh is secant, else the tangent one."""
     mean_secant_stiffness_N_per_um: float
-    """Force over the deflection beyond first contact, mean over the pitch, without what gives way in series."""
+    """Force over the deflection beyond first contact, mean over the pitch, without the series compliance."""
     unloaded_peak_to_peak_um: float
-    """Of the unloaded transmission error."""
+    """Peak-to-peak value of the unloaded transmission error."""
     static_peak_to_peak_um: float
-    """Of the transmission error under the static torque."""
+    """Peak-to-peak value of the transmission error under the static torque."""
     equivalent_amplitude_um: float
     """√ΣA_r² of the first three mesh harmonics of s = r_b1 θ_1 − r_b2 θ_2, the unloaded transmission error in it."""
     static_force_N: float
-    """Torque over base radius."""
+    """Static mesh force: torque over base radius."""
     largest_force_N: float
     """Largest mesh force, damping included."""
     heaviest_torque_share: float
-    """Largest mesh force over that of the heaviest torque of the force surface; above 1 the surface went on straight.
-    NaN, in JSON null, with another model of the mesh."""
+    """Largest mesh force over that of the heaviest torque of the force surface; above 1 the surface is extrapolated
+    linearly. NaN, in JSON null, with another model of the mesh."""
     smallest_force_N: float
-    """Smallest one: below 0 where back flanks press, or the damper pulls."""
+    """Smallest mesh force: below 0 where back flanks press, or the damper pulls."""
     separated_share: float
     """Share of the time in which no flanks touch."""
     lifted_share: float
-    """Share of the pitch in which the contact is computed under a thousandth of the static force, because flanks part
-    or the mesh force is less."""
+    """Share of the pitch in which the contact is computed under a thousandth of the static force, because flanks
+    separate or the mesh force is less."""
     repeats: int
     """Mesh periods after which the motion repeats; 0 where it does not within sixteen. Where they are several, contact
     is computed under their largest force at each phase, wear under their mean force."""
 
     @staticmethod
     def of(operation: Operation) -> OperationFigures:
-        """Of a pair's operation."""
+        """Figures of a pair's operation."""
         pair, excitation = operation.drive, operation.excitation
         number = int(np.argmin(np.abs(excitation.loaded.forces - pair.model.load)))
         found = response(pair.model, operation.period, operation.state, operation.repeats)
@@ -70,7 +70,7 @@ class OperationFigures:
 
 
 def operation_warnings(found: Sequence[OperationFigures]) -> list[str]:
-    """What a reader of contact and wear under the mesh forces of these vibrations has to know."""
+    """Warnings on contact and wear that are computed under the mesh forces of these vibrations."""
     sentences = []
     shares = [each.heaviest_torque_share for each in found if each.heaviest_torque_share > 1.0]
     if (largest := max(shares, default=0.0)) > 1.0:
@@ -90,12 +90,12 @@ def operation_warnings(found: Sequence[OperationFigures]) -> list[str]:
 
 @dataclass(frozen=True)
 class VibrationRow(OperationFigures):
-    """A line of vibration.csv: the pair as worn after some cycles."""
+    """A line of vibration.csv: the worn pair after some cycles."""
 
     cycles: float
     """Revolutions of the pinion."""
 
     @staticmethod
     def after(cycles: float, operation: Operation) -> VibrationRow:
-        """After so many revolutions of the pinion."""
+        """Row of an operation after so many revolutions of the pinion."""
         return VibrationRow(**asdict(OperationFigures.of(operation)), cycles=cycles)

@@ -1,4 +1,4 @@
-"""The oscillator of a gear pair: its inertia, damping and load on the mesh force that was computed."""
+"""Oscillator of a gear pair: inertia, damping and load on the mesh force that was computed."""
 
 from __future__ import annotations
 
@@ -23,15 +23,16 @@ from evolvent_meshes.gears.pair import GearPair
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
 RIGID = 'dynamics.bodies = "rigid"'
-"""The setting without elastic bodies, for remedies."""
+"""Setting of rigid bodies, for remedies in messages."""
 NANOMETRE = 1e-6
-"""To which unloaded errors are right [mm]; no backlash is asked for less."""
+"""Accuracy of unloaded errors [mm]; no backlash is asked for less."""
 OVERLAP = 0.01
-"""Of both sides of the teeth, over the static deflection, that is taken for the inaccuracy of their errors."""
+"""Overlap of both sides of the teeth, over the static deflection, up to which it counts as inaccuracy of their
+errors."""
 
 
 class TooSoftBodies(ResultError):
-    """Static shapes of gear bodies that give way more than the whole mesh does."""
+    """Gear bodies whose static shapes are more compliant than the whole mesh."""
 
     def __init__(self, what: str) -> None:
         super().__init__(f"{what}; take {RIGID}, or evolvent transient")
@@ -39,73 +40,74 @@ class TooSoftBodies(ResultError):
 
 @dataclass(frozen=True)
 class DriveSettings:
-    """What a pair's vibration depends on beside its mesh."""
+    """Settings of a pair's vibration beside its mesh."""
 
     inertias: tuple[float, float]
-    """Of pinion and wheel [t·mm²]."""
+    """Moments of inertia of pinion and wheel [t·mm²]."""
     damping_ratio: float
-    """Of the mesh, over the critical one at the mean stiffness, see `Drive`: a series compliance lowers the damping."""
+    """Damping ratio of the mesh, over the critical damping at the mean stiffness, see `Drive`: a series compliance
+    lowers the damping."""
     backlash: float
-    """Along the line of action, from flank to flank [mm]. Where straight lines between both sides' errors have room and
-    splines through them have not, what these lack is added."""
+    """Backlash along the line of action, from flank to flank [mm]. Where straight lines between both sides' errors
+    leave room and splines through them do not, the overlap of the splines is added."""
     damped_apart: bool = False
-    """Whether this damping acts in free flight, too."""
+    """Whether the damping of the mesh acts on separated flanks, too."""
     ground_damping_ratio: float = 0.0
-    """Of the shafts against the ground, likewise."""
+    """Damping ratio of the shafts against the ground, over the critical damping at the mean stiffness."""
     series_stiffness: float = math.inf
-    """Of shafts and bearings along the line of action [N/mm]."""
+    """Stiffness of shafts and bearings along the line of action [N/mm]."""
     mesh: MeshModel = "force_surface"
-    """The mesh force."""
+    """Model of the mesh force."""
     bodies: tuple[GearShapes, GearShapes] | None = None
-    """How the bodies of pinion and wheel give way, on their whole width; None: they are rigid, with all inertia at the
-    bores."""
+    """Static shapes of the bodies of pinion and wheel, on their whole width; None: the bodies are rigid, with all
+    inertia at the bores."""
 
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """A pair that vibrates."""
+    """Vibration model of a gear pair."""
 
     model: TorsionalModel
-    """Its oscillator."""
+    """Oscillator with one degree of freedom."""
     mean_stiffness: float
-    """Under the load, with what gives way in series, mean over the pitch [N/mm]: the secant one where the mesh has it,
-    else the tangent one."""
+    """Mean stiffness of the mesh over the pitch under the load, with the series compliance [N/mm]: the secant one where
+    the mesh has it, else the tangent one."""
     teeth: int
-    """Of the pinion."""
+    """Number of teeth of the pinion."""
     settings: DriveSettings
-    """What it was made with."""
+    """Settings from which the model was made."""
     moving_stiffness: float
-    """The mean stiffness in motion [N/mm]: with elastic bodies their inertia lies nearer to the mesh than the bores,
-    which hold them in statics. That of `mean_stiffness` where bodies are rigid."""
+    """Mean stiffness in motion [N/mm]: the inertia of elastic bodies lies nearer to the mesh than the bores, which hold
+    them in statics. `mean_stiffness` where bodies are rigid."""
     equivalent_mass: float
-    """m_e of rigid bodies [t]."""
+    """Equivalent mass m_e of rigid bodies [t]."""
     body_frequency: float
-    """Lowest frequency [Hz] of the bodies' own vibration on the mesh, which one degree of freedom leaves out; infinite
-    for rigid bodies."""
+    """Lowest natural frequency [Hz] of the bodies on the mesh that one degree of freedom leaves out; infinite for rigid
+    bodies."""
 
     @property
     def natural_speed(self) -> float:
-        """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness [r/min]."""
+        """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness [r/min]."""
         return self._speed(self.moving_stiffness / self.model.mass)
 
     def body_speed(self, harmonic: int) -> float:
-        """Of the pinion, at which this mesh harmonic has that frequency [r/min]."""
+        """Speed of the pinion at which this mesh harmonic has the frequency `body_frequency` [r/min]."""
         return 60.0 * self.body_frequency / (harmonic * self.teeth)
 
     @property
     def rigid_natural_speed(self) -> float:
-        """The same of rigid bodies, with all inertia at the bores [r/min]."""
+        """Natural speed of the pinion with rigid bodies, all inertia at the bores [r/min]."""
         return self._speed(self.mean_stiffness / self.equivalent_mass)
 
     def _speed(self, square: float) -> float:
-        """[r/min] at which the mesh frequency is that of ω² [1/s²]."""
+        """Speed of the pinion [r/min] at which the mesh frequency is that of ω² [1/s²]."""
         return math.sqrt(square) / (2.0 * math.pi) * 60.0 / self.teeth
 
 
 def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: DriveSettings) -> Drive:
-    """The pair under a load, F_0 [N]. The force surface serves every load up to its heaviest; stiffnesses under a load
-    between two that were solved are those of `MeshExcitation.under`. Raises ValueError beyond the heaviest, Jammed,
-    TooSoftBodies."""
+    """Vibration model of a pair under a load F_0 [N]. The force surface serves every load up to its heaviest;
+    stiffnesses under a load between two that were solved are those of `MeshExcitation.under`. Raises ValueError beyond
+    the heaviest, Jammed, TooSoftBodies."""
     mesh = excitation if math.isinf(settings.series_stiffness) else excitation.in_series(settings.series_stiffness)
     mean = _mean(mesh, load, settings)
     body = _body(pair, mean, settings)
@@ -130,7 +132,7 @@ def _mean(mesh: MeshExcitation, load: float, settings: DriveSettings) -> float:
 
 
 def _body(pair: GearPair, stiffness: float, settings: DriveSettings) -> OneDegree:
-    """Both bodies on a mesh of this mean stiffness [N/mm]. Raises TooSoftBodies."""
+    """One degree of freedom for both bodies on a mesh of this mean stiffness [N/mm]. Raises TooSoftBodies."""
     if settings.bodies is None:
         return OneDegree(equivalent_mass(pair, settings.inertias), 0.0, 0.0, math.inf)
     pinion, wheel = (gear.with_inertia(moment) for gear, moment in zip(settings.bodies, settings.inertias))
@@ -141,8 +143,8 @@ def _body(pair: GearPair, stiffness: float, settings: DriveSettings) -> OneDegre
 
 
 def _check_left(mesh: MeshExcitation, stiffer: float) -> None:
-    """Raises TooSoftBodies where the mesh gives way less at some position under some torque than its bodies are stiffer
-    in motion [mm/N]."""
+    """Raises TooSoftBodies where the compliance of the mesh, at some position under some torque, is not above the one
+    by which the bodies are stiffer in motion [mm/N]."""
     least = 1.0 / float(mesh.loaded.stiffness.max())
     if least <= stiffer:
         raise TooSoftBodies(
@@ -152,7 +154,7 @@ def _check_left(mesh: MeshExcitation, stiffer: float) -> None:
 
 
 def lacking_room(problem: GearProblem, positions: int, settings: DriveSettings) -> float:
-    """Backlash [mm] that unloaded errors at so many positions of the pitch want beyond the given one, by geometry
+    """Backlash [mm] that unloaded errors at so many positions of the pitch need beyond the given one, by geometry
     alone; 0 where both sides of the teeth have room. Where it is 0, `drive` raises no Jammed: neither on these flanks,
     whose errors it joins by the same splines, nor on worn ones, from which material is only taken away."""
     angles = np.array(uniform_pitch(problem.pair.pinion.z, positions).angles)
@@ -172,8 +174,8 @@ def geometric_backlash(pair: GearPair) -> float:
 
 
 def _law(pair: GearPair, mesh: MeshExcitation, load: float, settings: DriveSettings) -> MeshLaw:
-    """Of both sides of the teeth. Raises Jammed where they overlap between straight lines, too; what splines alone lack
-    is added to the backlash."""
+    """Mesh law of both sides of the teeth. Raises Jammed where they overlap between straight lines, too; the overlap of
+    splines alone is added to the backlash."""
     if settings.mesh != "force_surface":
         return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)
     side, begin = mesh.force_surface(), _begin(pair, mesh.loaded.angles)
@@ -190,7 +192,7 @@ def _begin(pair: GearPair, angles: Floats) -> float:
 
 
 def _overlap(side: MeshSide, pair: GearPair, settings: DriveSettings, begin: float) -> float:
-    """By which both sides of the teeth overlap [mm]; 0 where they have room. begin: phase of the first position."""
+    """Overlap of both sides of the teeth [mm]; 0 where they have room. begin: phase of the first position."""
     try:
         if settings.mesh == "force_surface":
             mirrored_law(side, pair, settings.backlash, begin)

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 
 ENOUGH_STEPS = 20.0
-"""A period of the pair's own vibration: the method's period is 1.1 % too long then, with eight steps 6.4 %
-(ρ_∞ = 0.8, without damping), more than a resonance is wide."""
+"""Time steps a period of the pair's own vibration that resolve it: the method's period is 1.1 % too long then, with
+eight steps 6.4 % (ρ_∞ = 0.8, without damping), more than a resonance is wide."""
 SEEN_STEPS = 8.0
-"""Points a period that see a vibration: they miss its peak by up to 8 % of its amplitude."""
+"""Points a period that show a vibration: they miss its peak by up to 8 % of its amplitude."""
 MOST_POSITIONS = 1000
-"""Of a mesh period, that a scene may have."""
+"""Largest number of positions of a mesh period in a scene."""
 
 
 def unresolved(speed: float, natural: float, steps: float, positions: int, radius: float) -> str:
-    """The sentence on too long time steps; empty where there are `ENOUGH_STEPS` of them.
+    """Sentence on too long time steps; empty where there are `ENOUGH_STEPS` of them.
 
     speed: of the pinion [r/min]. natural: frequency of the pair's own vibration [Hz]. steps: equal ones, in a period
     of it. positions: of a mesh period, each of which ends a step. radius: transient.spectral_radius.
@@ -38,8 +38,8 @@ def unresolved(speed: float, natural: float, steps: float, positions: int, radiu
 
 
 def unresolved_within(speed: float, natural: float, steps: float, tolerance: float) -> str:
-    """The same of steps that a tolerance divides, which are short where it matters: vibration below the tolerance is
-    smeared. steps: in the mean, of which `SEEN_STEPS` are wanted."""
+    """Sentence on too long time steps that a tolerance divides; empty where there are `SEEN_STEPS` of them. Steps are
+    short where it matters, and vibration below the tolerance is smeared. steps: in a period, in the mean."""
     if steps >= SEEN_STEPS:
         return ""
     return (
@@ -49,8 +49,8 @@ def unresolved_within(speed: float, natural: float, steps: float, tolerance: flo
 
 
 def unseen(speed: float, natural: float, positions: float) -> str:
-    """That the tables, which have the positions alone, may miss peaks between them; empty where they do not.
-    positions: in a period of the pair's own vibration."""
+    """Sentence on peaks that the tables may miss, as they have the positions alone; empty where they do not. positions:
+    in a period of the pair's own vibration."""
     if positions >= SEEN_STEPS:
         return ""
     return (

@@ -2,8 +2,8 @@
 
     M z̈ + K z = Σ g_j (F_0j − F_j) ,    x_j = g_j·z ,    t_j = b_j·z
 
-x_j is what mesh j closes by, where its force acts; t_j is the same at the bores, the transmission error. K is that of
-the bodies alone, so that rigid rotation is free. Shafts and further meshes add coordinates and rows.
+x_j is the approach of the flanks of mesh j, where its force acts; t_j is that of the bores, the transmission error. K
+is that of the bodies alone, so that rigid rotation is free. Shafts and further meshes add coordinates and rows.
 """
 
 from __future__ import annotations
@@ -24,23 +24,24 @@ MESHING = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class GearShapes:
-    """A gear as a turn about its axis and m static shapes, in which its bore is held."""
+    """A gear as a rotation about its axis and m static shapes with held bore."""
 
     mass: Floats
-    """(m + 1, m + 1), the turn first [t·mm², and so on by the units of the shapes; per mm of face in 2D]."""
+    """Mass matrix (m + 1, m + 1), the rotation first [t·mm², and so on by the units of the shapes; per mm of face in
+    2D]."""
     stiffness: Floats
-    """(m + 1, m + 1); the turn has none."""
+    """Stiffness matrix (m + 1, m + 1); zero for the rotation."""
     closing: Floats
-    """(m + 1,) what the mesh closes by along the line of action [mm], by unit coordinates: the base radius first."""
+    """Approach of the flanks (m + 1,) along the line of action by unit coordinates [mm]: the base radius first."""
 
     def with_inertia(self, moment: float) -> GearShapes:
-        """With another moment of inertia in all [t·mm²]: what is not the body's turns rigidly with the bore."""
+        """Gear with another total moment of inertia [t·mm²]: the part beyond its body rotates rigidly with the bore."""
         mass = self.mass.copy()
         mass[0, 0] = moment
         return GearShapes(mass, self.stiffness, self.closing)
 
     def scaled(self, width: float) -> GearShapes:
-        """The gear of `width` [mm] of one per mm of face, under a unit force on all of it."""
+        """Gear of face width `width` [mm] from one per mm of face, under a unit force on all of it."""
         size = np.append(1.0, np.full(len(self.mass) - 1, 1.0 / width))
         both = np.outer(size, size) * width
         return GearShapes(self.mass * both, self.stiffness * both, self.closing * size)
@@ -48,40 +49,43 @@ class GearShapes:
 
 @dataclass(frozen=True, eq=False)
 class SmallSystem:
-    """n coordinates and k meshes."""
+    """Mass, stiffness and meshes of a system with n coordinates and k meshes."""
 
     mass: Floats
-    """M (n, n)."""
+    """Mass matrix M (n, n)."""
     stiffness: Floats
-    """K (n, n) of the bodies."""
+    """Stiffness matrix K (n, n) of the bodies."""
     closing: Floats
-    """g (k, n): what each mesh closes by, by unit coordinates [mm]."""
+    """Approach g (k, n) of the flanks of each mesh by unit coordinates [mm]."""
     reading: Floats
-    """b (k, n): the same of rigid bodies that turn as their bores do: the transmission error [mm]."""
+    """Transmission error b (k, n) of each mesh by unit coordinates [mm]: the approach of rigid bodies that turn as
+    their bores do."""
 
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
-        """ω² (n,) of the bodies without any mesh, 0 where rigid, ascending, and their shapes (n, n), φᵀMφ = 1."""
+        """Squared natural frequencies ω² (n,) of the bodies without any mesh, 0 where rigid, ascending, and their
+        shapes (n, n), φᵀMφ = 1."""
         squares, shapes = la.eigh(self.stiffness, self.mass)
         squares[squares < RIGID * max(float(squares[-1]), 1.0)] = 0.0
         return squares, shapes
 
     def mass_at(self, mesh: int) -> float:
-        """m [t] that a mesh feels of rigid bodies: 1/Σ (g·φ)² over the rigid motions."""
+        """Mass m [t] of rigid bodies at a mesh: 1/Σ (g·φ)² over the rigid motions."""
         squares, shapes = self.modes
         return float(1.0 / np.sum((self.closing[mesh] @ shapes[:, squares == 0.0]) ** 2))
 
     def compliance(self, one: Floats, other: Floats) -> float:
-        """Σ (one·φ)(other·φ)/ω² over all elastic modes [mm/N]: what a force along one row (n,) gives along another."""
+        """Compliance Σ (one·φ)(other·φ)/ω² over all elastic modes [mm/N]: displacement along one row (n,) by a unit
+        force along another."""
         squares, shapes = self.modes
         elastic = squares > 0.0
         return float(np.sum((one @ shapes[:, elastic]) * (other @ shapes[:, elastic]) / squares[elastic]))
 
     def natural(self, mesh: int, stiffness: float) -> tuple[float, float]:
-        """ω [rad/s] of small motions in which one mesh alone has a stiffness [N/mm] where its force acts: of the motion
-        that carries most of the transmission error under a change of the mesh force, and of the next faster one in
-        which the mesh has a part; infinite where there is none. A light hub on a soft web, which the torque at its bore
-        turns most, is not taken for the pair's own motion."""
+        """Natural frequencies ω [rad/s] of small motions in which one mesh alone has a stiffness [N/mm] where its force
+        acts: of the motion that carries most of the transmission error under a change of the mesh force, and of the
+        next faster one in which the mesh has a part; infinite where there is none. A light hub on a soft web, which the
+        torque at its bore turns most, is not taken for the pair's own motion."""
         g = self.closing[mesh]
         squares, shapes = la.eigh(self.stiffness + stiffness * np.outer(g, g), self.mass)
         least = RIGID * max(float(squares[-1]), 1.0)
@@ -94,8 +98,8 @@ class SmallSystem:
 
 
 def pair_system(pinion: GearShapes, wheel: GearShapes) -> SmallSystem:
-    """Both gears, free to turn, and their mesh. Coordinates are the turns, oriented so that the mesh closes, and the
-    shapes."""
+    """System of both gears, free to turn, and their mesh. Coordinates are the rotations, oriented so that the mesh
+    closes, and the shapes."""
     gears, turns = (pinion, wheel), (0, len(pinion.mass))
     closing = np.concatenate([gear.closing for gear in gears])
     reading = np.zeros_like(closing)

@@ -21,25 +21,25 @@ from evolvent.results.error_bars.peak_bounds import beside_largest
 from evolvent.strength.root_passage import GearRoots, root_passages
 
 GAIN = 0.005
-"""Of the largest stress: as much as it may still rise between two positions."""
+"""Rise of the largest stress between two positions that is left unresolved, over the largest stress."""
 NARROWEST = 0.01
-"""Interval that is not divided, over the pitch."""
+"""Narrowest interval between positions that is divided, over the pitch."""
 Roots = list[tuple[GearRoots, GearRoots]]
-"""Of pinion and wheel at each friction coefficient."""
+"""Roots of pinion and wheel at each friction coefficient."""
 
 
 @dataclass(frozen=True, eq=False)
 class SweptRoots:
-    """Positions of a pitch and what they do to the roots."""
+    """Positions of a pitch, and the root stress of both gears at them."""
 
     positions: Sequence[SweptPosition]
-    """By ascending angle."""
+    """Swept positions by ascending angle."""
     roots: Roots
-    """Over their rotations."""
+    """Root stress over the rotations of these positions."""
 
 
 def roots_of(model: GearModel, positions: Sequence[SweptPosition]) -> Roots:
-    """Of both gears, condensed from meshes of `root_meshes`, at each friction coefficient."""
+    """Roots of both gears, condensed from meshes of `root_meshes`, at each friction coefficient."""
     found: Roots = []
     for index in range(len(positions[0].results)):
         pinion, wheel = (root_passages(body, [each.results[index] for each in positions]) for body in model.bodies)
@@ -48,7 +48,7 @@ def roots_of(model: GearModel, positions: Sequence[SweptPosition]) -> Roots:
 
 
 def with_peaks(model: GearModel, known: SweptRoots, frictions: Sequence[float], comm: MPI.Comm) -> SweptRoots:
-    """With positions around the largest stresses. Collective. Raises NotConverged, SearchError."""
+    """Root stress with further positions around its largest values. Collective. Raises NotConverged, SearchError."""
     while angles := on_first(comm, partial(_further, model, known)):
         known = with_angles(model, known, angles, frictions, comm)
     return known
@@ -57,7 +57,7 @@ def with_peaks(model: GearModel, known: SweptRoots, frictions: Sequence[float], 
 def with_angles(
     model: GearModel, known: SweptRoots, angles: Sequence[float], frictions: Sequence[float], comm: MPI.Comm
 ) -> SweptRoots:
-    """With further pinion rotations [rad], each from the state of the last one before it. Collective.
+    """Root stress with further pinion rotations [rad], each from the state of the last one before it. Collective.
 
     Raises NotConverged, SearchError.
     """

@@ -35,17 +35,17 @@ class RootPeak:
     angle: float
     """Pinion rotation of the tooth [rad]; 0 where its flanks touch at the pitch point of the mid-face section."""
     radius: float
-    """Of the place [mm]."""
+    """Radius of the place [mm]."""
     height: float
     """Axial position of the place [mm]."""
     tangent_angle: float
-    """Of the profile at the place to the tooth's centre line [rad]; 30° at the standard's critical section."""
+    """Angle of the profile at the place to the tooth's centre line [rad]; 30° at the standard's critical section."""
     mean: float
     """Mean of the largest and the smallest stress over the passage, there and in the direction of this one [MPa]."""
     amplitude: float
-    """Half of their difference [MPa]."""
+    """Half of the difference of the largest and the smallest stress over the passage, as in `mean` [MPa]."""
     load_share: float
-    """Of the normal force at that rotation, the part on this tooth."""
+    """Share of this tooth in the normal force at that rotation."""
     whole_load: float
     """Largest, or smallest, principal stress at that rotation with the whole load on this tooth [MPa]."""
 
@@ -55,30 +55,30 @@ class RootPassage:
     """Stress at the root of one side of a tooth, at k rotations in ascending order."""
 
     root: RootSurface
-    """n nodes."""
+    """Root surface with n nodes."""
     angles: Floats
-    """(k,) pinion rotation of the tooth [rad]."""
+    """Pinion rotations (k,) of the tooth [rad]."""
     stress: Floats
-    """(k, n, 3, 3) in the sector's frame [MPa]."""
+    """Stress tensors (k, n, 3, 3) in the sector's frame [MPa]."""
     load_share: Floats
-    """(k,) of the normal force, the part on this tooth."""
+    """Share (k,) of this tooth in the normal force."""
     whole_load: Floats
-    """(k,) largest principal stress on the loaded side, smallest on the back, under the forces on this tooth alone,
-    over the share, so that they are the whole load [MPa]; NaN where there are none."""
+    """Largest principal stress (k,) on the loaded side, smallest on the back, with the whole load on this tooth [MPa]:
+    under the forces on it alone, over its share. NaN where there are none."""
 
     @cached_property
     def principal(self) -> Floats:
-        """(k, n, 3) principal stresses, ascending [MPa]."""
+        """Principal stresses (k, n, 3), ascending [MPa]."""
         return principal_stresses(self.stress)
 
     @cached_property
     def highest(self) -> Floats:
-        """(k, n) largest principal stress [MPa]; -inf where it may be that of a contact (`is_fillet`)."""
+        """Largest principal stress (k, n) [MPa]; -inf where it may be that of a contact (`is_fillet`)."""
         return np.where(self.root.is_fillet, self.principal[..., 2], -np.inf)
 
     @cached_property
     def lowest(self) -> Floats:
-        """(k, n) smallest principal stress [MPa]; inf where it may be that of a contact."""
+        """Smallest principal stress (k, n) [MPa]; inf where it may be that of a contact."""
         return np.where(self.root.is_fillet, self.principal[..., 0], np.inf)
 
     @property
@@ -93,20 +93,20 @@ class RootPassage:
 
     @property
     def tension(self) -> RootPeak:
-        """Where and when the largest principal stress is largest."""
+        """Peak of the largest principal stress over nodes and rotations."""
         return self._peak(int(np.argmax(self.highest)), 2)
 
     @property
     def compression(self) -> RootPeak:
-        """Where and when the smallest principal stress is smallest."""
+        """Peak of the smallest principal stress over nodes and rotations."""
         return self._peak(int(np.argmin(self.lowest)), 0)
 
     def tension_at(self, k: int) -> RootPeak:
-        """Where the largest principal stress is largest at rotation number k."""
+        """Peak of the largest principal stress over the nodes at rotation number k."""
         return self._peak(k * len(self.root.radii) + int(np.argmax(self.highest[k])), 2)
 
     def joined(self, other: RootPassage) -> RootPassage:
-        """With the rotations of another passage of the same root."""
+        """Passage with the rotations of another one of the same root."""
         angles = np.concatenate([self.angles, other.angles])
         order = np.argsort(angles)
         stress = np.concatenate([self.stress, other.stress])
@@ -115,7 +115,7 @@ class RootPassage:
         return RootPassage(self.root, angles[order], stress[order], share[order], whole[order])
 
     def _peak(self, place: int, number: int) -> RootPeak:
-        """place: of the (k, n) stresses. number: of the principal stress there."""
+        """Peak of a principal stress. place: of the (k, n) stresses. number: of the principal stress there."""
         k, j = divmod(place, len(self.root.radii))
         direction = np.linalg.eigh(self.stress[k, j])[1][:, number]
         course = self.stress[:, j] @ direction @ direction
@@ -128,20 +128,20 @@ class RootPassage:
 
 @dataclass(frozen=True, eq=False)
 class GearRoots:
-    """Both sides of a tooth of one gear."""
+    """Root stress of both sides of a tooth of one gear."""
 
     loaded_side: RootPassage
-    """Below the loaded flank, pulled."""
+    """Passage of the root below the loaded flank, which bending pulls."""
     back_side: RootPassage
-    """Pressed."""
+    """Passage of the root below the back flank, which bending presses."""
 
     def joined(self, other: GearRoots) -> GearRoots:
-        """With the rotations of other passages of the same tooth."""
+        """Roots with the rotations of other passages of the same tooth."""
         return GearRoots(self.loaded_side.joined(other.loaded_side), self.back_side.joined(other.back_side))
 
 
 def root_passages(body: GearBody, results: Sequence[PositionResult]) -> GearRoots:
-    """Of one gear under the results of a pitch at one friction coefficient.
+    """Root stress of one gear under the results of a pitch at one friction coefficient.
 
     body: as it was condensed for them, from a mesh of `root_meshes`.
     """
@@ -167,7 +167,8 @@ def root_passages(body: GearBody, results: Sequence[PositionResult]) -> GearRoot
 
 
 def _displacements(chain: ChainedCompliance | TwoLevelRing, loads: NodalForces) -> tuple[Moved, Moved]:
-    """Of each tooth's observed nodes under the forces on all teeth, and under those on this tooth alone."""
+    """Displacements of each tooth's observed nodes under the forces on all teeth, and under those on this tooth
+    alone."""
     teeth = np.unique(loads.rows[:, 0]).tolist()
     own = [np.where((loads.rows[:, 0] == tooth)[:, None], loads.forces, 0.0) for tooth in teeth]
     parts = chain.observed_displacements(loads.rows, np.concatenate([loads.forces, *own]))  # one factorisation for all

@@ -13,12 +13,12 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 ROUNDING = 1e-9
-"""Of a radius: a node at the root form circle lies within it."""
+"""Relative tolerance of a radius: a node at the root form circle lies within it."""
 LEAST_TANGENT = np.radians(20.0)
-"""Of the profile to the tooth's centre line where bending is looked for; the standard's critical section is at 30°, the
-largest stress of finite elements at 35 to 50°. A tip edge that presses above the root form circle pulls at the profile
-below: on Yang's pinion, without relief, by 1100 MPa at the circle, where the tangent is at 5°, by 410 at 19°. Bending
-has its largest tension, 795 MPa, later and at 38°."""
+"""Least angle of the profile's tangent to the tooth's centre line at which bending stress is evaluated. At the
+standard's critical section it is 30°, at the largest stress of finite elements 35 to 50°. A tip edge that presses above
+the root form circle pulls at the profile below: on Yang's pinion, without relief, by 1100 MPa at the circle, where the
+tangent is at 5°, by 410 at 19°. Bending has its largest tension, 795 MPa, later and at 38°."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +27,9 @@ class RootSurface:
     space."""
 
     gear: GearParameters
-    """Whose root it is."""
+    """Gear of the root."""
     surface: Surface
-    """n nodes, numbered as in the sector's mesh by `nodes`."""
+    """Surface with n nodes, numbered as in the sector's mesh by `nodes`."""
 
     @property
     def heights(self) -> Floats:
@@ -39,12 +39,12 @@ class RootSurface:
 
     @property
     def radii(self) -> Floats:
-        """(n,) [mm]."""
+        """Radii (n,) of the nodes [mm]."""
         return np.hypot(self.surface.points[:, 0], self.surface.points[:, 1])
 
     @property
     def is_fillet(self) -> Bools:
-        """(n,) whether stress at a node is the root's: the tangent has `LEAST_TANGENT`, and all facets of the node lie
+        """Whether stress at a node is the root's (n,): the tangent has `LEAST_TANGENT`, and all facets of the node lie
         within the root form circle. Beyond it the involute begins, which the other gear's tip may touch: stress there
         and close below is that of a contact, and facets under pressure are not free."""
         beyond = 2.0 * self.radii > self.gear.root_form_diameter * (1.0 + ROUNDING)

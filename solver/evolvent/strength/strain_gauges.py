@@ -1,4 +1,4 @@
-"""Strain gauges at the root of a tooth, along the profile: what a measured passage is held against.
+"""Strain gauges at the root of a tooth, along the profile, to compare with a measured passage.
 
 A gauge finds the mean strain over its length, not the largest. It lies in a transverse section of the fillet, its
 middle where the profile has a given angle to the tooth's centre line.
@@ -28,17 +28,17 @@ class Gauge:
     """A strain gauge along the profile of a root."""
 
     member: Member
-    """Whose root it is on."""
+    """Gear on whose root the gauge is."""
     loaded_side: bool
-    """Below the loaded flank, or below the back."""
+    """Whether the gauge is below the loaded flank, or below the back."""
     angle: float
-    """Between the profile's tangent and the tooth's centre line at its middle [rad]."""
+    """Angle between the profile's tangent and the tooth's centre line at the middle of the gauge [rad]."""
     height: float
-    """Its axial position, 0 at mid-face [mm]."""
+    """Axial position of the gauge, 0 at mid-face [mm]."""
     length: float
-    """Along the profile [mm]."""
+    """Length of the gauge along the profile [mm]."""
     number: int = 1
-    """In the scene, from 1; messages name it."""
+    """Number of the gauge in the scene, from 1, for messages."""
 
 
 def gauge_strain(gauge: Gauge, roots: GearRoots, material: Material) -> Floats:
@@ -53,7 +53,7 @@ def gauge_strain(gauge: Gauge, roots: GearRoots, material: Material) -> Floats:
 
 
 def gauge_places(gauge: Gauge, root: RootSurface) -> Floats:
-    """Arc lengths (SAMPLES,) from the upper end of a root's profile at which a gauge looks [mm].
+    """Arc lengths (SAMPLES,) of the points of a gauge from the upper end of a root's profile [mm].
 
     Raises InputError where it does not lie on the root's mesh.
     """
@@ -102,7 +102,7 @@ class _Profile:
         return places
 
     def at(self, values: Floats, arcs: Floats, z: float) -> Floats:
-        """(n, k) of nodal values (nodes, k) at arc lengths (n,) and a height."""
+        """Values (n, k) at arc lengths (n,) and a height, interpolated from nodal ones (nodes, k)."""
         if self.is_plane:
             order = np.argsort(self._arcs)
             return np.stack([np.interp(arcs, self._arcs[order], column[order]) for column in values.T], axis=1)

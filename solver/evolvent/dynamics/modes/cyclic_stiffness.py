@@ -24,16 +24,16 @@ Numbers = NDArray[np.float64 | np.complex128]
 
 @dataclass(frozen=True)
 class CyclicFaces:
-    """Which degrees of freedom of a sector are interior, and which belong to its cut faces."""
+    """Degrees of freedom of a sector: those of its interior and of its two cut faces."""
 
     interior: Ints
-    """(n_i,)."""
+    """Interior degrees of freedom (n_i,)."""
     low: Ints
-    """(c,)."""
+    """Degrees of freedom (c,) of the low cut face."""
     high: Ints
-    """(c,), in matching order."""
+    """Degrees of freedom (c,) of the high cut face, in the order of the low one."""
     turn: sp.csr_matrix
-    """(c, c) from the low face's displacements to the same turned by the pitch."""
+    """Map (c, c) from the low face's displacements to the same turned by the pitch."""
 
     def reduced(self, matrix: sp.csr_matrix, phase: complex) -> sp.csr_matrix:
         """TᴴKT (n_i + c, n_i + c) of a sector's matrix (N, N) at e^{iθ}; real where that is."""
@@ -70,17 +70,17 @@ class CyclicStiffness:
         self._inside = Factor(stiffness[faces.interior][:, faces.interior].tocsr())
 
     def inverse(self, phase: complex) -> CyclicInverse:
-        """K(θ)⁻¹ at e^{iθ}."""
+        """Inverse K(θ)⁻¹ at e^{iθ}."""
         across = (self._low + phase * self._high).tocsr()
         return CyclicInverse(self._inside, across, cho_factor(self._face(phase), lower=True), across.shape[0])
 
     def negative(self, phase: complex) -> int:
-        """How many eigenvalues of K(θ) are negative: all are of the low face, as the interior was factored (Wittrick
-        and Williams, Q. J. Mech. Appl. Math. 24 (1971) 263-284)."""
+        """Number of negative eigenvalues of K(θ): all are of the low face, as the interior was factored (Wittrick and
+        Williams, Q. J. Mech. Appl. Math. 24 (1971) 263-284)."""
         return int(np.count_nonzero(np.linalg.eigvalsh(self._face(phase)) < 0.0))
 
     def _face(self, phase: complex) -> Numbers:
-        """(c, c) of the low face without the interior."""
+        """Stiffness (c, c) of the low face at e^{iθ}, with the interior eliminated."""
         S, c = self._schur, len(self.faces.low)
         return S[:c, :c] + S[c:, c:] + phase * S[:c, c:] + np.conj(phase) * S[c:, :c]
 
@@ -90,12 +90,13 @@ class CyclicStiffness:
 
     @cached_property
     def _high(self) -> sp.csr_matrix:
-        """Of the high face, in the frame of the low one."""
+        """Stiffness (n_i, c) between interior and high face, in the frame of the low one."""
         return (self._stiffness[self.faces.interior][:, self.faces.high] @ self.faces.turn).tocsr()
 
     @cached_property
     def _schur(self) -> Floats:
-        """(2c, 2c) stiffness of both cut faces, the high one in the frame of the low one."""
+        """Stiffness (2c, 2c) of both cut faces with the interior eliminated, the high one in the frame of the low
+        one."""
         faces, turn = self.faces, self.faces.turn
         cut = np.concatenate([faces.low, faces.high])
         both = sp.block_diag([sp.eye(len(faces.low)), turn]).tocsr()
@@ -106,19 +107,19 @@ class CyclicStiffness:
 
 @dataclass(frozen=True)
 class CyclicInverse:
-    """K(θ)⁻¹ on interior and low face."""
+    """Inverse K(θ)⁻¹ on interior and low face."""
 
     inside: Factor
-    """Of the interior."""
+    """Factor of the interior stiffness."""
     across: sp.csr_matrix
-    """K between interior and low face, (n_i, c)."""
+    """Stiffness (n_i, c) between interior and low face."""
     face: tuple[Numbers, bool]
-    """Cholesky factor of the low face."""
+    """Cholesky factor of the low face's stiffness."""
     count: int
-    """n_i."""
+    """Number n_i of interior degrees of freedom."""
 
     def solve(self, right: Numbers) -> Numbers:
-        """u (n_i + c,) for b."""
+        """Displacements u (n_i + c,) under forces b (n_i + c,)."""
         b, on_face = np.split(right, [self.count])
         low = cho_solve(self.face, on_face - self.across.conj().T @ self._solved(b))
         return np.concatenate([self._solved(b - self.across @ low), low])

@@ -1,4 +1,4 @@
-"""The inertia of a gear: natural modes at its flanks, moment of inertia, and what both have in common."""
+"""Inertia of a gear: natural modes at its flanks, moment of inertia, and their coupling."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 
 @dataclass(frozen=True)
 class GearModes:
-    """m modes of a gear whose bore is held in its frame."""
+    """Inertia of a gear with m modes, its bore held in its frame."""
 
     modes: RingModes
-    """Their shapes are those of the flank's functionals (n·d, m), which enter the contact."""
+    """Natural modes with the shapes (n·d, m) of the flank's functionals, which enter the contact."""
     moment_of_inertia: float
-    """Of the meshed body about its axis [t·mm²; t·mm in 2D]."""
+    """Moment of inertia of the meshed body about its axis [t·mm²; t·mm in 2D]."""
     spun: Floats
-    """φᵀ M r (m,): inertia force on each mode by a unit angular acceleration; zero but in harmonic 0."""
+    """Inertia force φᵀ M r (m,) on each mode by a unit angular acceleration; zero but in harmonic 0."""
 
     @property
     def count(self) -> int:
-        """m."""
+        """Number m of modes."""
         return len(self.modes.frequencies)
 
     def at(self, tooth: int, nodes: Ints, d: int) -> Floats:
@@ -46,24 +46,24 @@ class GearModes:
 
 
 FIRST = 8
-"""Modes of each harmonic that are looked for first where they cannot be counted beforehand."""
+"""Modes of each harmonic that are computed first where they cannot be counted beforehand."""
 
 
 @dataclass(frozen=True)
 class ModeChoice:
-    """Which modes are computed."""
+    """Rule by which modes are computed."""
 
     highest: float
-    """All up to this frequency [rad/s]."""
+    """Frequency up to which all modes are computed [rad/s]."""
     per_harmonic: int | None = None
-    """So many of each harmonic instead, pairs counted once."""
+    """Number of modes of each harmonic, pairs counted once; None: all up to a frequency."""
     least: int = 0
-    """At least so many of each harmonic, whatever their frequency."""
+    """Fewest modes of each harmonic, whatever their frequency."""
 
     def of(
         self, sector: SectorMatrices, sectors: int, computed: Callable[[], None] = lambda: None
     ) -> RingModes:
-        """The modes. computed: called after each harmonic. Raises NotPositiveDefinite, OutOfMemory."""
+        """Modes of a ring of sectors. computed: called after each harmonic. Raises NotPositiveDefinite, OutOfMemory."""
         if self.per_harmonic is not None:
             return ring_modes(sector, sectors, [self.per_harmonic for _ in harmonics(sectors)], computed)
         try:
@@ -73,7 +73,8 @@ class ModeChoice:
             return self._by_search(sector, sectors, computed)
 
     def _by_search(self, sector: SectorMatrices, sectors: int, computed: Callable[[], None]) -> RingModes:
-        """More and more of each harmonic, until one beyond the highest is among them."""
+        """Modes of a ring of sectors, more and more of each harmonic until one beyond the highest frequency is among
+        them."""
         count = FIRST
         while True:
             found = ring_modes(sector, sectors, [count for _ in harmonics(sectors)], computed)

@@ -1,4 +1,5 @@
-"""The mesh force on a gear's flanks, in the mean over a pitch: shared alike along all contact lines of a position."""
+"""Mesh force on a gear's flanks, averaged over a pitch, with the same force per length on all contact lines of a
+position."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 DEGREE = 4
-"""Of the rule on each part of a facet."""
+"""Polynomial degree of the quadrature rule on each part of a facet."""
 BEYOND = 2
 """Tooth pairs before and behind those in contact at rotation 0 that may touch within half a pitch of it."""
 
@@ -54,5 +55,5 @@ def mean_load(pair: GearPair, member: Member, flank: Surface) -> dict[int, Float
 
 
 def _line_length(pair: GearPair, rotations: Floats) -> Floats:
-    """Of all contact lines (n,) [mm] at pinion rotations (n,)."""
+    """Length (n,) of all contact lines together at pinion rotations (n,) [mm]."""
     return np.array([pair.contact_line_length(float(rotation)) for rotation in rotations])

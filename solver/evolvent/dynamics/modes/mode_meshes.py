@@ -1,4 +1,4 @@
-"""The sector mesh on which a gear's modes are computed: its own where that is small, else a coarse one.
+"""The sector mesh on which a gear's modes are computed: the gear's own mesh where that is small, else a coarse one.
 
 Natural modes up to the mesh frequency's harmonics are as long as the gear: they need no flank that resolves a contact.
 """
@@ -40,7 +40,8 @@ def coarse_sector(problem: GearProblem, member: Member) -> MeshData:
 
 
 def _coarse_flank(fine: SectorResolution) -> SectorResolution:
-    """Half as many elements along profile, face and root, but all below the teeth: what the bore holds bends there."""
+    """Sector with half as many elements along profile, face and root, but all below the teeth: what the bore holds
+    bends there."""
     return replace(
         coarser(fine), core_elements=fine.core_elements, rim_elements=fine.rim_elements,
         web_elements=fine.web_elements, hub_elements=fine.hub_elements,

@@ -24,14 +24,14 @@ FEW = 60
 
 @dataclass(frozen=True)
 class SectorMatrices:
-    """A sector without its held degrees of freedom, N of them."""
+    """Stiffness and mass of a sector on its N free degrees of freedom."""
 
     stiffness: sp.csr_matrix
-    """(N, N) [N/mm]."""
+    """Stiffness matrix (N, N) [N/mm]."""
     mass: sp.csr_matrix
-    """(N, N) [t]."""
+    """Mass matrix (N, N) [t]."""
     faces: CyclicFaces
-    """Its cut faces."""
+    """Degrees of freedom of the sector's interior and cut faces."""
 
 
 @dataclass(frozen=True)
@@ -39,19 +39,20 @@ class RingModes:
     """m modes of the whole gear, ascending within each harmonic; those of a pair follow each other."""
 
     sectors: int
-    """N."""
+    """Number N of sectors."""
     frequencies: Floats
-    """ω (m,) [rad/s]."""
+    """Natural frequencies ω (m,) [rad/s]."""
     harmonic: Ints
-    """(m,) k."""
+    """Harmonic k (m,) of each mode."""
     imaginary: Ints
-    """(m,) 1 for the second one of a pair, else 0."""
+    """Number (m,) of each mode in its pair: 1 for the second one, else 0."""
     shapes: Numbers
-    """(n, m) complex, of sector 0 in its own frame, scaled; the real part is the displacement, see `of_sector`."""
+    """Complex shapes (n, m) of sector 0 in its own frame, scaled; the real part is the displacement, see
+    `of_sector`."""
 
     @property
     def rank(self) -> Ints:
-        """(m,) 0 of the lowest modes of each harmonic, 1 of the next ones, both of a pair alike."""
+        """Rank (m,) of each mode in its harmonic by frequency, from 0; both of a pair have the same."""
         count = np.cumsum(self.imaginary == 0)
         first = np.searchsorted(self.harmonic, self.harmonic)
         return np.asarray(count - count[first])
@@ -63,7 +64,7 @@ class RingModes:
         return np.real(shapes * turned)
 
     def some(self, wanted: Bools) -> RingModes:
-        """Those that are wanted, (m,) bool: both of a pair or none."""
+        """Some of the modes. wanted: (m,), both of a pair or none."""
         return RingModes(
             self.sectors, self.frequencies[wanted], self.harmonic[wanted], self.imaginary[wanted],
             self.shapes[:, wanted],
@@ -81,12 +82,12 @@ class RingModes:
 
 
 def harmonics(sectors: int) -> range:
-    """0 … N/2."""
+    """Harmonics 0 … N/2 of a ring of N sectors."""
     return range(sectors // 2 + 1)
 
 
 def modes_below(sector: SectorMatrices, sectors: int, highest: float) -> list[int]:
-    """How many modes each harmonic has below a frequency [rad/s], pairs counted once.
+    """Number of modes of each harmonic below a frequency [rad/s], pairs counted once.
 
     Raises NotPositiveDefinite where the interior alone, with its cut faces held, vibrates below it; OutOfMemory.
     """
@@ -122,7 +123,7 @@ def ring_modes(
 
 
 def phase_of(k: int, sectors: int) -> complex:
-    """e^{2πik/N}, a real number where it is one."""
+    """Phase e^{2πik/N} of harmonic k between neighbouring sectors; a real number for k = 0 and N/2."""
     turned = np.exp(2j * np.pi * k / sectors)
     return complex(turned) if 2 * k not in (0, sectors) else float(np.real(turned))
 
@@ -130,7 +131,7 @@ def phase_of(k: int, sectors: int) -> complex:
 def _modes(
     sector: SectorMatrices, inverse: CyclicInverse, phase: complex, count: int
 ) -> tuple[Floats, Numbers]:
-    """ω (m,) and φ (n_i + c, m) of a harmonic, φᴴ M(θ) φ = 1."""
+    """Frequencies ω (m,) and shapes φ (n_i + c, m) of a harmonic, φᴴ M(θ) φ = 1."""
     K, M = (sector.faces.reduced(matrix, phase) for matrix in (sector.stiffness, sector.mass))
     n = K.shape[0]
     if n <= max(FEW, 3 * count):

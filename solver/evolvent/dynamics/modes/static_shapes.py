@@ -1,4 +1,4 @@
-"""Static shapes of a gear in which its body gives way where gears vibrate, from one sector, harmonic by harmonic.
+"""Static shapes of an elastic gear body for the vibration of a pair, from one sector, harmonic by harmonic.
 
 Load-dependent Ritz vectors (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10 (1982) 813-821), the bore held:
 
@@ -33,7 +33,7 @@ SHAPES = 3
 
 
 def static_shapes(problem: GearProblem, member: Member, density: float) -> GearShapes:
-    """Of one gear whose bore is held in its frame; per mm of face width in 2D.
+    """Static shapes, mass and stiffness of one gear whose bore is held in its frame; per mm of face width in 2D.
 
     density: [t/mm³].
 
@@ -57,7 +57,7 @@ def static_shapes(problem: GearProblem, member: Member, density: float) -> GearS
 
 
 def with_elastic_bodies(settings: DriveSettings, problem: GearProblem, density: float) -> DriveSettings:
-    """The same with gear bodies that give way. density: [kg/m³].
+    """Settings of a vibration with elastic gear bodies. density: [kg/m³].
 
     Raises InputError for an inertia below that of a body, before anything is meshed, and as `static_shapes`.
     """
@@ -77,7 +77,8 @@ class _Ring:
         self.sector, self.sectors, self.rows, self.load, self.inertia = sector, sectors, rows, load, inertia
 
     def shapes(self, moment: float, radius: float) -> GearShapes:
-        """All harmonics together. moment: of the body [t·mm²; t·mm in 2D]. radius: of the base circle [mm]."""
+        """Mass, stiffness and approach of the static shapes, summed over all harmonics. moment: of the body [t·mm²;
+        t·mm in 2D]. radius: of the base circle [mm]."""
         cyclic = CyclicStiffness(self.sector.stiffness, self.sector.faces)
         mass, stiffness = np.zeros((SHAPES + 1, SHAPES + 1)), np.zeros((SHAPES + 1, SHAPES + 1))
         mass[0, 0], closing = moment, np.append(radius, np.zeros(SHAPES))
@@ -98,7 +99,8 @@ class _Ring:
         return GearShapes(mass, stiffness, closing)
 
     def _amplitudes(self, k: int, phase: complex) -> tuple[Numbers, Numbers]:
-        """Of a harmonic, on interior and low face: the mesh force, and the inertia by a unit turn."""
+        """Amplitudes of a harmonic on interior and low face: of the mesh force, and of the inertia by a unit
+        rotation."""
         forces = np.zeros(len(self.inertia), dtype=np.result_type(phase))
         for tooth, own in self.load.items():
             turned = np.exp(-2j * np.pi * k * tooth / self.sectors)

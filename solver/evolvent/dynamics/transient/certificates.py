@@ -1,4 +1,4 @@
-"""What time steps and steady motions of a pair must fulfil before they count as results."""
+"""Limits that time steps and steady motions of a pair must satisfy to count as results."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from evolvent.dynamics.transient.step_balance import Residuals
 from evolvent_meshes.errors import ResultError
 
 EXACT = 1e-8
-"""Of what holds to rounding and the tolerance of Newton's method, 1e-10."""
+"""Limit of residuals that are zero up to rounding and the tolerance of Newton's method, 1e-10."""
 MOMENT = 1e-2
-"""Of moments about one axis, which the gap between the flanks sets apart."""
+"""Limit of the residual of moments about one axis: the forces on both flanks act a gap apart."""
 EXCHANGED = 0.05
-"""Energy that the way from one position to the next may leave without account, over what the load passes on there;
-beyond it the steps are too long for what happens in them, or strains are not small. Found, with ten positions a mesh
-period: up to 0.003, with separation; in a blow from rest, with 300, up to 0.02."""
+"""Limit of the unbalanced energy on the way from one position to the next, over the energy that the load transmits
+there. Beyond it the steps are too long for what happens in them, or strains are not small. Values with ten positions a
+mesh period: up to 0.003, with separation; in an impact from rest, with 300, up to 0.02."""
 PERIOD = 1e-2
-"""The same of a mesh period of a steady motion, as of a pitch in statics."""
+"""Limit of the unbalanced energy of a mesh period of a steady motion, over the energy that the load transmits, as of a
+pitch in statics."""
 MEAN_FORCE = 0.01
-"""Of the load: what the mean mesh force of a steady motion may differ from it."""
+"""Limit of the deviation of the mean mesh force of a steady motion from the load, over the load."""
 WRONG = "an error of the program: please report the scene"
 COARSE = (
     "where a tip's edge bears relieve it (tip_relief_um) or lower the torque, else take more positions "
@@ -33,18 +34,18 @@ class Unbalanced(ResultError):
 
 @dataclass(frozen=True)
 class Limit:
-    """What a residual may be at most."""
+    """Largest allowed value of a residual of a time step."""
 
     name: str
-    """Of `Residuals`."""
+    """Field of `Residuals` that is limited."""
     from_second: bool
-    """Whether it is known from the second step on."""
+    """Whether the residual is known only from the second time step on."""
     balance: str
-    """In words."""
+    """Name of the balance in messages."""
     most: float
-    """Relative."""
+    """Largest allowed residual, relative."""
     remedy: str
-    """Where it is more."""
+    """Remedy in the message of a residual that exceeds its limit."""
 
 
 LIMITS = (
@@ -57,8 +58,8 @@ LIMITS = (
 
 
 WITHIN = tuple(limit for limit in LIMITS if limit.name != "exchange")
-"""Of a step that ends between two positions. Where other nodes come into contact some energy has no account, however
-short the step is: it is taken over the whole way from one position to the next."""
+"""Limits of a step that ends between two positions. Where other nodes come into contact some energy is unbalanced,
+however short the step is: the exchange of energy is balanced over the whole way from one position to the next."""
 
 
 def certify_step(residuals: Residuals, is_first: bool, where: str, limits: Sequence[Limit] = LIMITS) -> None:
@@ -71,9 +72,10 @@ def certify_step(residuals: Residuals, is_first: bool, where: str, limits: Seque
 
 
 def certify_motion(mean_force: float, left: float, where: str) -> None:
-    """Raises Unbalanced of a steady motion.
+    """Raises Unbalanced where the mean mesh force or the energy of a steady motion is out of balance.
 
-    mean_force: of the mesh over the load. left: energy of a mesh period without account, over what the load passes on.
+    mean_force: mean mesh force over the load. left: unbalanced energy of a mesh period, over the energy that the load
+    transmits.
     """
     if not abs(mean_force - 1.0) <= MEAN_FORCE:
         raise Unbalanced(

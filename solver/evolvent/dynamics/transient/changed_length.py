@@ -1,4 +1,4 @@
-"""From time steps of one length to those of another, and the error of a step.
+"""Conversion of a state to time steps of another length, and the error of a step.
 
 Between two steps the scheme keeps a state, the acceleration a_n in it, and that of the step before, a_{n−1}. Their
 difference is in proportion to the length of the step, and a_n lags behind the motion by α (a_n − a_{n−1}). A step that
@@ -12,9 +12,9 @@ as if all steps before had been as long. Position, velocity and the equation of 
 no more of the past than that equation. So its balance is exact of the next step, too, with the energy that the same
 state has in steps of the new length.
 
-The error of a step is that of contact/transient/adaptive_steps.py, over the energy of the vibration, the modes, and the
-static rest and contact of both gears together: under a load at rest, the speed at which they would swing back without
-it.
+The error of a step is that of contact/transient/adaptive_steps.py, over the energy of the vibration, the modes, the
+residual static compliance of both gears and the contact together: under a load at rest, the speed at which they would
+swing back without it.
 """
 
 from __future__ import annotations
@@ -46,6 +46,6 @@ def motion_energy(system: LinearSystem, state: MotionState) -> float:
 
 
 def step_error(step: TimeStep, end: MotionState, energy: float) -> float:
-    """√(eᵀM e)/h over √2E of a step, e = c h² (a_{n+1} − a_n). energy: E > 0, the largest so far."""
+    """Error √(eᵀM e)/h over √2E of a step, e = c h² (a_{n+1} − a_n). energy: E > 0, the largest so far."""
     e = step.scheme.error_constant * step.length * (end.acceleration - step.state.acceleration)
     return float(np.sqrt(e @ (step.system.mass @ e) / (2.0 * energy)))

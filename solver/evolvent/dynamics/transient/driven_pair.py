@@ -1,4 +1,4 @@
-"""From condensed gears to a pair that moves: its modes, how it turns, its damping, what loads it."""
+"""Moving pair from condensed gears: modes, inertia, damping and load torques."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.gears.member import Member
 
 RESOLVED = 0.25
-"""Of the frequency at which time steps sample: modes up to it have four steps a period, others answer at once."""
+"""Highest resolved frequency over the sampling frequency of the time steps. Modes up to it have four steps a period,
+others respond quasi-statically."""
 LEAST = 1
-"""Modes of each harmonic. Without any, inertia stays at the bore, and the pair's own frequency is a lower one: by
+"""Fewest modes of each harmonic. Without any, inertia stays at the bore, and the pair's natural frequency is lower: by
 6 % of a spur pair (docs/he2022.md)."""
 
 
@@ -28,7 +29,7 @@ def resolved_modes(
     problem: GearProblem, model: GearModel, density: float, sampled: float, per_harmonic: int | None,
     least: int = LEAST, computed: Callable[[], None] = lambda: None,
 ) -> tuple[GearModes, GearModes]:
-    """Of pinion and wheel: those that have four time steps a period, and at least so many of each harmonic.
+    """Modes of pinion and wheel that have four time steps a period, and at least so many of each harmonic.
 
     density: [kg/m³]. sampled: time steps a second, at the highest speed. per_harmonic: so many of each harmonic of the
     ring of teeth instead, None for the default. least: by default `LEAST`. computed: called after each harmonic.
@@ -47,7 +48,7 @@ def driven_pair(
     model: GearModel, modes: tuple[GearModes, GearModes], settings: DriveSettings, static: Sequence[PositionResult],
     mode_damping: float, constant_speed: bool,
 ) -> MovingPair:
-    """The pair with inertia.
+    """Condensed pair with modes, inertia, damping and load torques.
 
     static: positions of a pitch, whose mean tangent stiffness makes the damping of the mesh. mode_damping: ratio of
     each mode. constant_speed: whether the gear without the torque turns uniformly; else both are free.
@@ -72,8 +73,8 @@ def driven_pair(
 
 
 def loaded_as_static(pair: MovingPair, static: Sequence[PositionResult]) -> MovingPair:
-    """The pair under the torque of the scene on one gear, and the mean one that statics have on the other: less or more
-    by friction. static: positions of a pitch at one friction coefficient."""
+    """The pair under the scene's torque on one gear and the mean static reaction torque on the other, which friction
+    makes smaller or larger. static: positions of a pitch at one friction coefficient."""
     other = 1 - pair.model.load.on
     torques = list(pair.drive.torques)
     torques[other] = float(np.mean([result.torques[other] for result in static]))

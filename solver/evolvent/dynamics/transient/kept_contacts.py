@@ -1,5 +1,4 @@
-"""The contacts of a mesh period's positions, and of those that time steps between them end at, searched once each and
-kept.
+"""Store of searched contacts, at the positions of a mesh period and at the ends of time steps between them.
 
 The gap of a position is linear in ψ near where it was searched. Searches are made at whole multiples of twice
 `search_window`'s reach, so that a pair that vibrates needs one or a few for each position.
@@ -20,42 +19,45 @@ from evolvent.gears.contact.pair_contact import gear_contact
 from evolvent.gears.kinematics import Stand
 
 REACH = 1e-3
-"""Displacement of the flanks [modules] for which a search serves."""
+"""Largest displacement of the flanks from where they were searched [modules], up to which a search is used."""
 BEYOND = 1.5
-"""Half-multiples to which it may serve where the next search would send the solution back."""
+"""Factor on `REACH` up to which a search is used where the next one would send the solution back to it."""
 WIDER = 1.5
-"""Windows over those of statics: vibration widens contacts."""
+"""Half-width of search windows over that in statics: vibration widens contacts."""
 RIM = 1.5
-"""By how much a window is widened where contact reaches its rim. Each step begins with the first window again, so that
-results do not depend on what was solved before."""
+"""Factor by which a search window is widened where contact reaches its rim. Each step begins with the first window
+again, so that results do not depend on what was solved before."""
 ROUNDS = 8
 
 
 Key = tuple[float, int, float]
-"""Position, among the closest ones that share it, multiple and half-width of the window."""
+"""Key of a searched contact: position, counted at the finest spacing that shares the store; multiple of the search
+spacing in ψ; half-width of the window."""
 
 
 @dataclass
 class ContactStore:
-    """Contacts that have been searched and solved, as far as there is room."""
+    """Store of searched and solved contacts with limited memory."""
 
     most: float = np.inf
-    """Memory that may be kept [bytes]. The first ones are kept: as each mesh period needs all of them in turn, dropping
-    the oldest would keep none that is needed next."""
+    """Largest memory of the stored contacts [bytes]. The first ones are stored: as each mesh period needs all of them
+    in turn, dropping the oldest would keep none that is needed next."""
     kept: dict[Key, SearchedContact] = field(default_factory=dict, repr=False)
-    """What had room."""
+    """Stored contacts, within the memory limit."""
     _sizes: dict[Key, int] = field(default_factory=dict, repr=False)
-    """Of what is kept [bytes]."""
+    """Memory of each stored contact [bytes]."""
     _latest: dict[Key, SearchedContact] = field(default_factory=dict, repr=False)
-    """The last one, if it had no room: a time step may ask for it twice. It comes on top of what may be kept."""
+    """Last contact, if it exceeded the memory limit: a time step may ask for it twice. It comes on top of that
+    limit."""
 
     def find(self, key: Key) -> SearchedContact | None:
-        """None where it has to be searched."""
+        """Stored contact of a key; None where it has to be searched."""
         return self.kept.get(key) or self._latest.get(key)
 
     def keep(self, key: Key, at: SearchedContact) -> None:
-        """Where there is room for what it is once it is solved: with its compliance, unless all solutions flew. What
-        results derive from it afterwards, a few per cent, is counted when it is solved again."""
+        """Stores a contact once it is solved, where memory allows. It counts with its compliance, unless flanks were
+        separated in all its solutions. Quantities that results derive from it later, a few per cent, are counted when
+        it is solved again."""
         self._latest.clear()
         self._sizes[key] = at.counted_bytes if key in self.kept else at.bytes_now
         self.kept[key] = at
@@ -66,28 +68,28 @@ class ContactStore:
 
 @dataclass(frozen=True)
 class KeptContacts:
-    """Of one pair, for any number of transients with the same number of components."""
+    """Searched contacts of one pair, for any number of transients with the same number of components."""
 
     pair: MovingPair
-    """With inertia."""
+    """Gear pair with its inertia."""
     positions: int
-    """Of a mesh period, n. Position 3.5 is midway between 3 and 4, n is 0 a pitch later."""
+    """Number n of positions of a mesh period. Position 3.5 is midway between 3 and 4, n is 0 a pitch later."""
     components: int
-    """k: 1 without friction, else the dimension of space."""
+    """Components k of contact forces: 1 without friction, else the dimension of space."""
     store: ContactStore = field(default_factory=ContactStore, repr=False)
-    """Where they are kept."""
+    """Store of the searched contacts."""
     apart: int = 1
-    """From one position to the next, among these."""
+    """Spacing of the positions over the finest spacing that shares the store."""
 
     def thinned(self, apart: int) -> KeptContacts:
-        """Each so-many-th position, from the first one on. What was searched for all positions is not searched again.
-        apart: a power of two, so that angles are the same to the last digit, and a divisor of the number of positions.
-        """
+        """Contacts of each `apart`-th position, from the first one on. Those that were searched for all positions are
+        not searched again. apart: a power of two, so that angles are the same to the last digit, and a divisor of the
+        number of positions."""
         return replace(self, positions=self.positions // apart, apart=apart * self.apart)
 
     @property
     def step_angle(self) -> float:
-        """Of the pinion between two positions [rad]."""
+        """Pinion rotation from one position to the next [rad]."""
         return 2.0 * np.pi / self.pair.model.pair.pinion.z / self.positions
 
     def solved(
@@ -138,5 +140,5 @@ class KeptContacts:
 
     @property
     def _spacing(self) -> float:
-        """ψ between two searches [rad]."""
+        """Rotation ψ between two searches [rad]."""
         return 2.0 * REACH * self.pair.model.pair.pinion.normal_module / self.pair.lever

@@ -1,4 +1,4 @@
-"""A gear pair with inertia: what moves.
+"""A gear pair with inertia: coordinates, mass, damping and stiffness.
 
 Coordinates are the modes of the pinion, those of the wheel, and one rotation ψ, by which the gears turn beyond the
 nominal rotation, each in its share.
@@ -24,7 +24,7 @@ from evolvent_meshes.gears.member import Member
 
 @dataclass(frozen=True)
 class Drive:
-    """How the gears turn beyond the nominal rotation.
+    """Rotation of the gears beyond the nominal one, as one coordinate ψ.
 
     With the pinion at constant speed the wheel's inertia alone swings. Where both gears are free, ψ is the motion
     against each other that leaves the nominal rotation alone (I_1 a_1 = I_2 a_2/u): the equivalent mass of the
@@ -32,36 +32,36 @@ class Drive:
     """
 
     shares: tuple[float, float]
-    """a: rotations of pinion and wheel about +z by a unit ψ."""
+    """Rotations a of pinion and wheel about +z by a unit ψ."""
     inertia: float
-    """Σ a² I [t·mm²; t·mm in 2D]."""
+    """Moment of inertia Σ a² I of ψ [t·mm²; t·mm in 2D]."""
     torques: tuple[float, float]
-    """That load pinion and wheel, both positive [N·mm; N in 2D]."""
+    """Load torques of pinion and wheel, both positive [N·mm; N in 2D]."""
 
     @staticmethod
     def at_constant_speed(driven: Member, inertia: float, torques: tuple[float, float]) -> Drive:
-        """The other gear turns uniformly. inertia: of the driven one."""
+        """Drive with one gear at constant speed. driven: the other gear; inertia: its moment of inertia."""
         shares = (0.0, 1.0) if driven is Member.WHEEL else (1.0, 0.0)
         return Drive(shares, inertia, torques)
 
     @staticmethod
     def free(ratio: float, inertias: tuple[float, float], torques: tuple[float, float]) -> Drive:
-        """Both gears are free. ratio: u."""
+        """Drive with both gears free to turn. ratio: u."""
         pinion, wheel = inertias
         shares = 1.0, ratio * pinion / wheel
         return Drive(shares, pinion + shares[1] ** 2 * wheel, torques)
 
     @property
     def torque(self) -> float:
-        """Σ a T on ψ [N·mm; N in 2D]."""
+        """Load torque Σ a T on ψ [N·mm; N in 2D]."""
         return sum(share * torque for share, torque in zip(self.shares, self.torques))
 
     def rotations(self, ψ: float) -> tuple[float, float]:
-        """Of pinion and wheel beyond the nominal ones [rad]."""
+        """Rotations of pinion and wheel beyond the nominal ones by ψ [rad]."""
         return self.shares[0] * ψ, self.shares[1] * ψ
 
     def of(self, rotations: tuple[float, float], base_radii: tuple[float, float]) -> float:
-        """ψ with the transmission error of two rotations [rad]."""
+        """Rotation ψ [rad] with the transmission error of two rotations [rad] of pinion and wheel."""
         error = sum(radius * rotation for radius, rotation in zip(base_radii, rotations))
         return error / self.lever(base_radii)
 
@@ -75,31 +75,32 @@ class MovingPair:
     """A condensed pair with inertia; m modes of both gears together."""
 
     model: GearModel
-    """The pair without inertia."""
+    """Condensed gears and their contact, without inertia."""
     gears: tuple[GearModes, GearModes]
     """Modes of pinion and wheel."""
     drive: Drive
-    """How they turn."""
+    """Rotation of the gears beyond the nominal one."""
     damping_ratio: float
-    """ζ of each mode."""
+    """Damping ratio ζ of each mode."""
     mesh_damping: float
-    """Force along the line of action per unit rate of the transmission error [N·s/mm; N·s/mm² in 2D]."""
+    """Damping of the mesh: force along the line of action per unit rate of the transmission error [N·s/mm; N·s/mm² in
+    2D]."""
     damped_apart: bool = False
-    """Whether it acts where the flanks are apart, too."""
+    """Whether the damping of the mesh acts on separated flanks, too."""
 
     @cached_property
     def frequencies(self) -> Floats:
-        """ω (m,) [rad/s]."""
+        """Natural frequencies ω (m,) of both gears with held bores [rad/s]."""
         return np.concatenate([gear.modes.frequencies for gear in self.gears])
 
     @property
     def count(self) -> int:
-        """m."""
+        """Number m of modes of both gears."""
         return len(self.frequencies)
 
     @property
     def base_radii(self) -> tuple[float, float]:
-        """[mm]."""
+        """Base radii of pinion and wheel [mm]."""
         pinion, wheel = self.model.pair.gears
         return pinion.base_radius, wheel.base_radius
 
@@ -110,7 +111,7 @@ class MovingPair:
 
     @cached_property
     def system(self) -> LinearSystem:
-        """Of modes and ψ, (m + 1) coordinates, with flanks in contact."""
+        """Mass, damping and stiffness of modes and ψ, (m + 1) coordinates, with flanks in contact."""
         m, ω = self.count, self.frequencies
         mass = np.eye(m + 1)
         spun = [share * gear.spun for share, gear in zip(self.drive.shares, self.gears)]
@@ -121,7 +122,7 @@ class MovingPair:
 
     @cached_property
     def system_apart(self) -> LinearSystem:
-        """The same with flanks apart."""
+        """Mass, damping and stiffness of modes and ψ, (m + 1) coordinates, with separated flanks."""
         if self.damped_apart:
             return self.system
         return replace(self.system, damping=np.append(self.system.damping[:-1], 0.0))
@@ -144,7 +145,8 @@ class MovingPair:
         return modal / self.frequencies**2
 
     def displacements(self, member: Member, rows: Ints) -> Floats:
-        """Of rows (k, 2) of a gear by unit amplitudes of its modes, in its own frame (k, d, m)."""
+        """Displacements (k, d, m) of rows (k, 2), tooth and node, of a gear by unit amplitudes of its modes, in its own
+        frame."""
         d, gear, z = self.model.bodies[member].d, self.gears[member], self.model.pair.gears[member].z
         result = np.zeros((len(rows), d, gear.count))
         for tooth in np.unique(rows[:, 0]):
@@ -158,7 +160,7 @@ class MovingPair:
         return self.displacements(member, rows) @ self._split(amplitudes)[member]
 
     def mode_jumps(self, geometry: ContactGeometry, k: int) -> Floats:
-        """Φ (n·k, m) [mm] at the contact of a position."""
+        """Jumps Φ (n·k, m) by unit modes at the contact of a position [mm]."""
         moving = [member for member in Member if self.gears[member].count]
         if not moving:
             return np.zeros((len(geometry.node) * k, 0))

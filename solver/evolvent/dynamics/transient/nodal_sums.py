@@ -1,4 +1,4 @@
-"""What the contact forces of a pair come to, summed over the nodes of the flanks.
+"""Moments, modal forces and resultants of a pair's contact forces, summed over the nodes of the flanks.
 
 The step is solved in the jumps of the contact (pair_step.py). Here the forces on both gears, in the gears' own frames,
 are summed at the nodes on which they act: as moments about the axes, forces on the modes, and resultants.
@@ -20,20 +20,22 @@ from evolvent_meshes.gears.member import Member
 
 @dataclass(frozen=True)
 class NodalSums:
-    """Of the contact forces at one time."""
+    """Sums of the contact forces over the nodes of the flanks at one time."""
 
     modal: Floats
-    """On the modes of both gears (m,) [N·mm per unit amplitude]."""
+    """Forces (m,) on the modes of both gears [N·mm per unit amplitude]."""
     torques: tuple[float, float]
-    """That the contact takes from pinion and wheel about their axes, signed as in `PositionResult` [N·mm; N in 2D]."""
+    """Torques that the contact takes from pinion and wheel about their axes, signed as in `PositionResult` [N·mm; N in
+    2D]."""
     resultants: Floats
-    """On pinion and wheel in the common frame (2, d) [N; N/mm in 2D]."""
+    """Resultant forces (2, d) on pinion and wheel in the common frame [N; N/mm in 2D]."""
     about_pinion: tuple[float, float]
     """Moments of the forces on pinion and wheel, both about the pinion's axis [N·mm; N in 2D]."""
 
     @staticmethod
     def of(pair: MovingPair, searched: Stand, result: PositionResult) -> NodalSums:
-        """searched: where the gears stood in the search, in whose frames the forces are."""
+        """Sums of the contact forces of a result. searched: where the gears stood in the search, in whose frames the
+        forces are."""
         rows, forces = (result.pinion_rows, result.wheel_rows), (result.pinion_forces, result.wheel_forces)
         torques, resultants, about_pinion = [], [], []
         for member, own, force in zip(Member, rows, forces):
@@ -60,5 +62,5 @@ def _points(body: GearBody, rows: Ints) -> Floats:
 
 
 def _moment(points: Floats, forces: Floats) -> float:
-    """About the z axis through the origin."""
+    """Moment of forces at points about the z axis through the origin."""
     return float(np.sum(points[:, 0] * forces[:, 1] - points[:, 1] * forces[:, 0]))

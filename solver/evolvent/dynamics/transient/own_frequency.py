@@ -26,9 +26,9 @@ from evolvent_meshes.errors import ResultError
 
 
 def own_frequency(pair: MovingPair, static: Sequence[PositionResult]) -> float:
-    """Of the mode that carries most of the transmission error under a change of the mesh force [Hz]: the root of the
-    mean square of all positions of a pitch. Raises ResultError where modes give way more than the mesh at all of
-    them."""
+    """Natural frequency [Hz] of the mode that carries most of the transmission error under a change of the mesh force:
+    the root of the mean square of all positions of a pitch. Raises ResultError where modes give way more than the mesh
+    at all of them."""
     known = [square for square in (_square(pair, position) for position in static) if square is not None]
     if not known:
         raise ResultError(
@@ -52,6 +52,6 @@ def _square(pair: MovingPair, position: PositionResult) -> float | None:
 
 
 def _modal_forces(pair: MovingPair, position: PositionResult) -> Floats:
-    """s (m,) on the modes of both gears."""
+    """Forces s (m,) on the modes of both gears by a unit mesh force."""
     torque = sum(share * taken for share, taken in zip(pair.drive.shares, position.torques))
     return pair.modal_forces(position) * (pair.lever / torque)

@@ -1,4 +1,4 @@
-"""What a time step of a gear pair begins with, and what it results in."""
+"""State of a gear pair at the start of a time step, and a time step as solved."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from evolvent_meshes.gears.member import Member
 
 @dataclass(frozen=True)
 class PairState:
-    """What the next time step begins with."""
+    """State of a gear pair at the start of a time step."""
 
     motion: MotionState
-    """Modes and ψ."""
+    """Position, velocity and acceleration of modes and ψ."""
     history: FrictionHistory | None
-    """Of friction, None without it."""
+    """Friction history; None without friction."""
     vibration: Floats
-    """(m,) amplitudes of the modes beyond those by the contact forces in statics."""
+    """Amplitudes (m,) of the modes beyond those by the contact forces in statics."""
     patch: ContactPatch | None = None
     """The last contact patch, None where it is not known or nothing touched."""
     before: StepEnd | None = None
-    """For the balance of the next step, None where there is no step before."""
+    """End of the previous step, for the balance of the next one; None where there is no previous step."""
     length: float = 0.0
-    """Of the step before [s]."""
+    """Length of the previous step [s]."""
     halvings: int = 0
-    """k of the next step: it is 2⁻ᵏ of the way between two positions."""
+    """Halvings k of the next step, which is 2⁻ᵏ of the way between two positions."""
     mesh_force: float | None = None
-    """At the end of the step before [N; N/mm in 2D], None where there is no step before."""
+    """Mesh force at the end of the previous step [N; N/mm in 2D]; None where there is no previous step."""
     energy: float = 0.0
-    """The largest so far, of vibration, modes, static rest and contact [N·mm; N in 2D]."""
+    """Largest energy so far, of modes and ψ, of the residual static compliance and of the contact [N·mm; N in 2D]."""
 
     def previous_jump(self, pair: MovingPair, geometry: ContactGeometry) -> PreviousJump | None:
         """Friction history interpolated to the nodes of a contact, None without friction."""
@@ -54,7 +54,8 @@ class PairState:
         return before
 
     def for_step(self, pair: MovingPair, scheme: TimeScheme, length: float) -> PairState:
-        """The same for a step of this length [s]. The first step begins without a past, and needs nothing of it."""
+        """State converted to a time step of this length [s]. The first step has no previous one, and needs no
+        conversion."""
         if self.before is None or length == self.length:
             return self
         stretch = length / self.length
@@ -65,22 +66,22 @@ class PairState:
 
 @dataclass(frozen=True)
 class SolvedStep:
-    """A time step that may count or not."""
+    """A solved time step, before it is accepted or rejected."""
 
     step: PairStep
-    """From its begin."""
+    """Equations of the step, from the state at its start."""
     begin: PairState
-    """For a step of its length."""
+    """State at the start, converted to the length of the step."""
     halvings: int
-    """k, see `PairState.halvings`."""
+    """Halvings k of the step, which is 2⁻ᵏ of the way between two positions."""
     at: SearchedContact
-    """The contact at its end."""
+    """Searched contact at the end of the step."""
     found: Equilibrium
-    """Of that contact."""
+    """Equilibrium of the contact at the end of the step."""
     motion: MotionState
-    """At its end."""
+    """Position, velocity and acceleration of modes and ψ at the end of the step."""
     stored: float
-    """Energy of rest and contact there."""
+    """Energy of the residual static compliance and of the contact at the end of the step [N·mm; N in 2D]."""
     jump_before: PreviousJump | None
     """Friction history interpolated to this contact, None without friction."""
 
@@ -98,10 +99,10 @@ class SolvedStep:
 
     @property
     def energy(self) -> float:
-        """The largest so far, see `PairState`."""
+        """Largest energy up to the end of the step, as `PairState.energy` [N·mm; N in 2D]."""
         return max(self.begin.energy, motion_energy(self.step.pair.system, self.motion) + self.stored)
 
     @property
     def error(self) -> float:
-        """Estimated (changed_length.py)."""
+        """Estimated relative error of the step (changed_length.py)."""
         return step_error(self.step.step, self.motion, self.energy)

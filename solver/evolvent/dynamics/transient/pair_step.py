@@ -33,38 +33,39 @@ class SearchedContact:
     """The contact of a position as searched, with k components, n·k jumps and m modes: no state enters it."""
 
     contact: GearContact
-    """Where the flanks face each other."""
+    """Contact between the flanks that face each other."""
     searched: float
-    """ψ_s [rad]."""
+    """Rotation ψ_s at which the flanks were searched [rad]."""
     modes: Floats
-    """Φ (n·k, m)."""
+    """Jumps Φ (n·k, m) by unit modes [mm]."""
     turned: Floats
-    """H (n·k,) [mm/rad]."""
+    """Jumps H (n·k,) by a unit ψ [mm/rad]."""
     k: int
-    """Components."""
+    """Number of components of the contact forces."""
     teeth: tuple[int, ...]
     """Tooth pairs that may touch."""
 
     @cached_property
     def compliance(self) -> JumpCompliance:
-        """A (n·k, n·k) [mm/N], put together where flanks touch first: in flight nothing needs it."""
+        """Static compliance A (n·k, n·k) [mm/N], assembled when flanks first touch: in flight nothing needs it."""
         return self.contact.geometry.compliance(self.k)
 
     @property
     def is_condensed(self) -> bool:
-        """Whether the compliance has been put together."""
+        """Whether the compliance has been assembled."""
         return "compliance" in vars(self)
 
     @property
     def bytes_now(self) -> int:
-        """Memory of its matrices, of what the search has found, and of what solutions have derived from it so far;
-        without the gears."""
+        """Memory [bytes] of matrices, search results, and what solutions have derived from them so far; without the
+        gears."""
         others = [value for name, value in vars(self).items() if name != "compliance"]
         return array_bytes(others, GearBody) + (self.compliance.nbytes if self.is_condensed else 0)
 
     @property
     def counted_bytes(self) -> int:
-        """The same; with a compliance, what it was when this was first asked for."""
+        """Memory [bytes] that counts in a store: `bytes_now`; with a compliance, its value when this was first asked
+        for."""
         return self._condensed_bytes if self.is_condensed else self.bytes_now
 
     @cached_property
@@ -73,7 +74,7 @@ class SearchedContact:
 
     @cached_property
     def _unsearched(self) -> tuple[UnsearchedOverlap, ...]:
-        """Where flanks overlap undeformed outside the window."""
+        """Overlaps of the undeformed flanks outside the window."""
         return unsearched_overlaps(self.contact.geometry, self.teeth)
 
     def overlap_outside(self, pair: MovingPair, found: Equilibrium) -> bool:
@@ -84,7 +85,7 @@ class SearchedContact:
 
     @staticmethod
     def of(pair: MovingPair, contact: GearContact, searched: float, k: int) -> SearchedContact:
-        """Puts the modes together."""
+        """Searched contact with the jumps by modes and ψ."""
         geometry = contact.geometry
         turned = sum(share * spin[:, :k] for share, spin in zip(pair.drive.shares, geometry.spins))
         return SearchedContact(contact, searched, pair.mode_jumps(geometry, k), np.ravel(turned), k, pair.model.teeth)
@@ -95,12 +96,12 @@ class PairStep:
     """One time step of a pair with m modes."""
 
     pair: MovingPair
-    """The pair."""
+    """Gear pair with its inertia."""
     step: TimeStep
-    """From the state at its begin, on modes and ψ (m + 1)."""
+    """Time step of modes and ψ (m + 1), from the state at its start."""
 
     def system(self, at: SearchedContact) -> CondensedSystem:
-        """The contact system at its end, on δ = ψ − ψ_s."""
+        """Contact system at the end of the step, in δ = ψ − ψ_s."""
         slow = 1.0 / self.pair.frequencies**2 - 1.0 / self._modal
         return CondensedSystem(
             operator=at.contact.operator,
@@ -113,8 +114,8 @@ class PairStep:
         )
 
     def in_flight(self, at: SearchedContact, k: int) -> Equilibrium | None:
-        """The solution of this system, of k components, where no point overlaps without contact forces: there are none
-        then. None where some do, or where nothing but contact holds the rotation."""
+        """Solution of k components without contact forces. None where points overlap without them, or where nothing but
+        contact holds the rotation."""
         free = free_motion(self._turned(at), self._jump(at), self._load(at), self._resistance)
         if free is None:
             return None
@@ -125,7 +126,7 @@ class PairStep:
         return Equilibrium(force, traction, δ, jump[:, :k], 0, 0.0)
 
     def state(self, at: SearchedContact, found: Equilibrium) -> MotionState:
-        """The state at its end."""
+        """Position, velocity and acceleration of modes and ψ at the end of the step."""
         m, D, b = self.pair.count, self.step.matrix, self.step.known
         ψ = at.searched + float(found.motion[0])
         pushed = at.modes.T @ with_components(found.force, at.k).ravel()
@@ -133,7 +134,7 @@ class PairStep:
         return self.step.after(np.append(q, ψ))
 
     def _turned(self, at: SearchedContact) -> Floats:
-        """H' (n·k, 1)."""
+        """Jumps H' (n·k, 1) by a unit δ with the modes eliminated."""
         return (at.turned - at.modes @ self._push)[:, None]
 
     def _jump(self, at: SearchedContact) -> Floats:
@@ -147,16 +148,16 @@ class PairStep:
 
     @cached_property
     def _resistance(self) -> Floats:
-        """D' (1, 1)."""
+        """Coefficient D' (1, 1) of δ with the modes eliminated."""
         m, D = self.pair.count, self.step.matrix
         return D[m:, m:] - D[m:, :m] @ self._push[:, None]
 
     @cached_property
     def _push(self) -> Floats:
-        """D_q⁻¹ D_qψ (m,)."""
+        """Coupling D_q⁻¹ D_qψ (m,) of the modes to ψ."""
         return self.step.matrix[: self.pair.count, self.pair.count] / self._modal
 
     @cached_property
     def _modal(self) -> Floats:
-        """D_q (m,)."""
+        """Diagonal D_q (m,) of the step's matrix for the modes."""
         return np.diag(self.step.matrix)[: self.pair.count]

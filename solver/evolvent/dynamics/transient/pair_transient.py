@@ -36,48 +36,48 @@ NO_STIFFNESS = float("nan")
 
 @dataclass(frozen=True)
 class PairMoment:
-    """A pair at a position, and the way there from the one before: what tables say of it."""
+    """Result of a pair at a position, and of the time steps from the position before."""
 
     time: float
-    """[s]."""
+    """Time since the start [s]."""
     result: PositionResult
     """The position, with teeth numbered as in a pitch from rotation 0 on."""
     mesh_force: float
     """Torque of the contact on ψ over its lever [N; N/mm in 2D]."""
     rate: float
-    """Of the transmission error [mm/s]."""
+    """Rate of the transmission error [mm/s]."""
     residuals: Residuals
-    """Of the balances: the largest of all steps."""
+    """Largest residuals of the balances of the time steps from the position before."""
     energies: StepEnergies
-    """Of all steps."""
+    """Energies of the time steps from the position before, together."""
     steps: StepsTaken
-    """How many there are, how long, and what happens in them."""
+    """Number, lengths, errors and mesh forces of the time steps from the position before."""
 
 
 @dataclass(frozen=True)
 class MovingMoment(PairMoment):
-    """A moment from which the motion goes on."""
+    """Result at a position, with the state from which the motion continues."""
 
     state: PairState
-    """To go on from."""
+    """State at the start of the next time step."""
 
 
 @dataclass(frozen=True)
 class PairTransient:
-    """Moves a pair on."""
+    """Time integration of a gear pair at constant nominal speed."""
 
     pair: MovingPair
-    """With inertia."""
+    """Gear pair with its inertia."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     speed: float
-    """Of the pinion [rad/s]."""
+    """Speed of the pinion [rad/s]."""
     scheme: TimeScheme
-    """Of the time steps."""
+    """Scheme of the time steps."""
     contacts: KeptContacts
-    """Of the positions of a mesh period, and of the parts between them."""
+    """Searched contacts at the positions of a mesh period, and at the ends of steps between them."""
     division: DividedSteps = UNDIVIDED
-    """Rules for the parts."""
+    """Rules that divide the interval between two positions into time steps."""
 
     @property
     def name(self) -> str:
@@ -86,7 +86,7 @@ class PairTransient:
 
     @property
     def time_step(self) -> float:
-        """From one position to the next [s]: the longest time step."""
+        """Time from one position to the next, the longest time step [s]."""
         return self.contacts.step_angle / self.speed
 
     def run(self, state: PairState, periods: int) -> Iterator[MovingMoment]:
@@ -101,7 +101,7 @@ class PairTransient:
             yield moment
 
     def _earlier(self, state: PairState) -> PairState:
-        """The same a pitch earlier, where the other teeth stand as these do."""
+        """State with the teeth renumbered by one pitch, so that the next position is at rotation 0 again."""
         m, pair = state.motion, self.pair
         motion = MotionState(*(pair.earlier(each, 1) for each in (m.position, m.velocity, m.acceleration)))
         history = None if state.history is None else state.history.earlier(1)
@@ -109,7 +109,8 @@ class PairTransient:
         return replace(state, motion=motion, history=history, vibration=pair.earlier(state.vibration, 1), before=before)
 
     def _advanced(self, state: PairState, n: int) -> MovingMoment:
-        """Position n since the start, from the one before. Raises NotConverged, SearchError, Unbalanced."""
+        """Result at position n since the start, from the state at the one before. Raises NotConverged, SearchError,
+        Unbalanced."""
         is_first, reached, steps = state.before is None, n - 1.0, []
         while reached < n:
             solved, rejected = self._accepted(state, n, reached)
@@ -123,17 +124,17 @@ class PairTransient:
         return moment
 
     def _where(self, n: int, reached: float) -> str:
-        """See `_phase`, for messages."""
+        """Speed, friction and pinion rotation on the way to position n, for messages."""
         degrees = np.degrees(self._phase(n, reached) * self.contacts.step_angle)
         return f"{self.name}, pinion at {degrees:.3f}°"
 
     def _phase(self, n: int, reached: float) -> float:
-        """Where a pair stands in the mesh period, on its way to position n: `reached` counts from the start."""
+        """Place in the mesh period on the way to position n, in positions. reached: positions since the start."""
         return n % self.contacts.positions + (reached - n)
 
     def _accepted(self, state: PairState, n: int, reached: float) -> tuple[SolvedStep, int]:
-        """The next time step, taken again in half until it counts, and how often it was. Raises NotConverged,
-        SearchError."""
+        """The next time step, repeated at half its length until it is accepted, and the number of rejected ones. Raises
+        NotConverged, SearchError."""
         halvings = state.halvings
         while True:
             try:
@@ -180,8 +181,8 @@ class PairTransient:
     def _equilibrium(
         self, step: PairStep, at: SearchedContact, patch: ContactPatch | None, before: PreviousJump | None, span: float
     ) -> Equilibrium:
-        """Of the contact at the end of a step in which the pinion turns by `span` [rad]. patch: of the last contact;
-        before: friction history at this one. Raises NotConverged."""
+        """Equilibrium of the contact at the end of a step in which the pinion turns by `span` [rad]. patch: of the last
+        contact; before: friction history at this one. Raises NotConverged."""
         system, geometry = step.system(at), at.contact.geometry
         start = None if patch is None else patch.at(geometry)
         smooth = frictionless(normal_part(system), start if start is not None and start.any() else None)
@@ -191,7 +192,7 @@ class PairTransient:
         return replace(rough, iterations=smooth.iterations + rough.iterations)
 
     def _moment(self, solved: SolvedStep, reached: float, rejected: int) -> MovingMoment:
-        """The end of a time step that counts, so many positions after the start."""
+        """Result at the end of an accepted time step. reached: positions since the start."""
         pair, at, found, motion, before = self.pair, solved.at, solved.found, solved.motion, solved.begin.before
         stand = replace(at.contact.stand, extra=pair.drive.rotations(float(motion.position[-1])))
         result = replace(
@@ -213,7 +214,7 @@ class PairTransient:
         )
 
     def _following(self, solved: SolvedStep, reached: float, rejected: int) -> int:
-        """Halvings of the step after one that counts."""
+        """Halvings of the step after an accepted one."""
         k = solved.halvings
         return k if rejected else self.division.after(k, solved.error, reached)
 
@@ -224,7 +225,7 @@ class PairTransient:
 
 
 def _joined(steps: Sequence[MovingMoment]) -> MovingMoment:
-    """The last one, with the balances and energies of all."""
+    """Result of the last of several time steps, with the balances and energies of all."""
     last = steps[-1]
     if len(steps) == 1:
         return last

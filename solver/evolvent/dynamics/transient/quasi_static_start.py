@@ -1,4 +1,4 @@
-"""The state in which a transient begins: statics, turning at the rate at which the equilibrium turns."""
+"""Static equilibrium as the initial state of a transient, with the velocity at which this equilibrium changes."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
 
 BEFORE = 4
-"""Positions that are solved before the first one: friction then has a history."""
+"""Positions that are solved before the first one, so that friction has a history."""
 FEWEST = 5
-"""Positions of a pitch that they are as far apart as at most: further back the same teeth do not touch any more."""
+"""Positions a pitch at the widest spacing of those solved before the first one: further back the same teeth do not
+touch any more."""
 
 
 @dataclass(frozen=True)
@@ -27,22 +28,23 @@ class QuasiStaticStart:
     """The static equilibrium at pinion rotation 0, with m modes."""
 
     position: Floats
-    """Modes and ψ (m + 1,)."""
+    """Amplitudes of the modes, and ψ (m + 1,)."""
     change: Floats
-    """Their change in a step between positions (m + 1,)."""
+    """Change of modes and ψ (m + 1,) from one position to the next."""
     history: FrictionHistory | None
-    """Of friction, None without it."""
+    """Friction history; None without friction."""
     patch: ContactPatch | None
-    """The contact patch."""
+    """Contact patch of the equilibrium."""
 
     def at(self, time_step: float) -> PairState:
-        """The state, for a step between positions [s]."""
+        """Initial state of a transient. time_step: between two positions [s]."""
         motion = MotionState(self.position, self.change / time_step, np.zeros(len(self.position)))
         return PairState(motion, self.history, np.zeros(len(self.position) - 1), self.patch)
 
 
 def quasi_static_starts(pair: MovingPair, step_angle: float, frictions: Sequence[float]) -> list[QuasiStaticStart]:
-    """At each friction coefficient. step_angle: between positions [rad]. Raises NotConverged, SearchError."""
+    """Static equilibria at pinion rotation 0, one for each friction coefficient. step_angle: between positions [rad].
+    Raises NotConverged, SearchError."""
     spacing = min(step_angle, 2.0 * np.pi / pair.model.pair.pinion.z / FEWEST)
     pitch = Pitch(tuple(float(spacing * k) for k in range(-BEFORE, 1)))
     before, last = list(sweep_pitch(pair.model, pitch, frictions, initial_state(frictions)))[-2:]
@@ -55,5 +57,5 @@ def quasi_static_starts(pair: MovingPair, step_angle: float, frictions: Sequence
 
 
 def _coordinates(pair: MovingPair, result: PositionResult) -> Floats:
-    """Modes and ψ (m + 1,) of a static position."""
+    """Amplitudes of the modes, and ψ (m + 1,), at a static position."""
     return np.append(pair.static(pair.modal_forces(result)), pair.drive.of(result.stand.extra, pair.base_radii))

@@ -1,9 +1,9 @@
-"""The state in which a transient begins with a blow: one gear at its speed at once, the other one at rest.
+"""Initial state of a transient that begins with an impact: one gear at its speed at once, the other one at rest.
 
 The flanks just touch, without load. The nominal rotation has both gears turn; a gear at rest lags behind it, by the
 speed of the line of action: r_b1 φ_1 − r_b2 φ_2 grows at r_b1 ω_1. The bodies do not vibrate, and all torques and the
 damping of the mesh act from then on, so that M a = p − D v at once. Where both gears are free it is their speed of
-approach; the nominal rotation is then that of both together, after the blow.
+approach; the nominal rotation is then that of both together, after the impact.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from evolvent.gears.sweep.friction_history import FrictionHistory
 
 
 def start_from_rest(pair: MovingPair, problem: GearProblem, speed: float, friction: float) -> PairState:
-    """The state at pinion rotation 0.
+    """State at pinion rotation 0 with one gear at its speed and the other one at rest.
 
     problem: of the pair. speed: of the pinion [rad/s]. friction: μ.
     """
@@ -37,6 +37,6 @@ def start_from_rest(pair: MovingPair, problem: GearProblem, speed: float, fricti
 
 
 def _untouched(stand: Stand, d: int) -> FrictionHistory:
-    """Of flanks on which nothing has pressed. d: of space."""
+    """Friction history of flanks that have not been in contact. d: dimension of space."""
     rows, nothing = np.zeros((0, 2), dtype=int), np.zeros((0, d))
     return FrictionHistory(stand, (rows, rows), (nothing, nothing), nothing)

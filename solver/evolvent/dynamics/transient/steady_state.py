@@ -16,36 +16,36 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class MeshPeriods:
-    """A transient's last mesh period, and what led to it."""
+    """Last mesh period of a transient, and how the transient became steady."""
 
     moments: tuple[PairMoment, ...]
-    """Its positions, at ascending rotations of the pinion from 0 on."""
+    """Results at the positions of the last mesh period, at ascending rotations of the pinion from 0 on."""
     errors: Floats
     """Transmission error [mm] at all positions since the start."""
     changes: Floats
     """Largest change of the transmission error from each mesh period to the next, over its peak-to-peak value."""
     wanted: float
-    """Change at which it counts as steady."""
+    """Largest value of `changes` at which the motion counts as steady."""
     residuals: Residuals
-    """The largest of all time steps."""
+    """Largest residuals of the balances of all time steps."""
     lowest_error: float
-    """Of transmission, the lowest at the ends of all time steps [mm]."""
+    """Lowest transmission error at the ends of all time steps [mm]."""
     beginning: tuple[PairMoment, ...] = ()
-    """Positions of the first mesh periods, where they are asked for."""
+    """Results at the positions of the first mesh periods, where they are asked for."""
 
     @property
     def periods(self) -> int:
-        """How many were computed."""
+        """Number of computed mesh periods."""
         return len(self.errors) // len(self.moments)
 
     @property
     def is_steady(self) -> bool:
-        """Whether the last one repeats the one before."""
+        """Whether the last mesh period repeats the one before."""
         return len(self.changes) > 0 and bool(self.changes[-1] <= self.wanted)
 
     @property
     def mean_force(self) -> float:
-        """Of the mesh over the last period [N; N/mm in 2D]: in a steady state the load's, as no momentum is left. The
+        """Mean mesh force of the last period [N; N/mm in 2D]: in a steady state the load's, as no momentum is left. The
         mean of its positions where these are all time steps, else the impulse over the time."""
         if self.steps.accepted == len(self.moments):
             return float(np.mean([moment.mesh_force for moment in self.moments]))
@@ -59,7 +59,7 @@ class MeshPeriods:
 
     @property
     def energies(self) -> StepEnergies:
-        """Of the last period."""
+        """Energies of the last mesh period."""
         return StepEnergies.summed(moment.energies for moment in self.moments)
 
 

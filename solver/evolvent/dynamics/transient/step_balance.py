@@ -43,10 +43,10 @@ TINY = 1e-300
 
 @dataclass(frozen=True)
 class Residuals:
-    """What balances are missed by, relative. NaN where there is no step before."""
+    """Relative residuals of the balances of a time step. NaN where there is no step before."""
 
     momentum: float
-    """Of the equations of motion, over the forces in them: the larger one of ψ and of the modes."""
+    """Residual of the equations of motion, over the forces in them: the larger one of ψ and of the modes."""
     reaction: float
     """Sum of the forces on both gears, and their moments about the axes less the torques of the result, over the force
     or the load."""
@@ -54,10 +54,10 @@ class Residuals:
     """Sum of the moments of the forces on both gears about one axis, over the force and the base radius. The points
     opposite each other on both flanks are a gap apart, so that it falls with the mesh."""
     motion: float
-    """Energy of modes and ψ, over this energy and the work on them."""
+    """Energy residual of modes and ψ, over this energy and the work on them."""
     exchange: float
-    """Energy between rotation, contact and motion, over what the load passes on: in a step, or on the whole way from
-    one position to the next."""
+    """Energy residual between rotation, contact and motion, over the energy that the load transmits: in a step, or on
+    the whole way from one position to the next."""
 
     def larger(self, other: Residuals) -> Residuals:
         """The larger ones of both, the known one where only one is known."""
@@ -65,67 +65,68 @@ class Residuals:
 
 
 NOTHING_KNOWN = Residuals(*[UNKNOWN] * 5)
-"""Of no step."""
+"""Residuals before the first time step: NaN."""
 
 
 @dataclass(frozen=True)
 class StepEnergies:
-    """What energy does in a time step, or in several [N·mm; N in 2D]. NaN where there is no step before."""
+    """Energies converted in a time step, or in several [N·mm; N in 2D]. NaN where there is no step before."""
 
     passed: float
-    """What the load passes on: its torque on the pinion times the step."""
+    """Energy that the load transmits: its torque on the pinion times the rotation in the step."""
     rotation: float
-    """That the nominal rotation puts in at the pinion, less what it takes out at the wheel."""
+    """Energy that the nominal rotation puts in at the pinion, less what it takes out at the wheel."""
     given: float
-    """By the contact to modes and ψ."""
+    """Work of the contact on modes and ψ."""
     friction: float
-    """Lost to friction."""
+    """Energy lost to friction in the contact."""
     stored: float
-    """By the static rest of both gears and the contact."""
+    """Energy stored by the residual static compliance of both gears and by the contact."""
     damping: float
-    """Lost to the damping of mesh and modes."""
+    """Energy lost to the damping of mesh and modes."""
     numerical: float
-    """Taken out by the time scheme, less what the same state has more of its energy where steps change their length.
-    """
+    """Energy taken out by the time scheme, less the increase of the scheme's energy of the same state where steps
+    change their length."""
 
     @staticmethod
     def summed(steps: Iterable[StepEnergies]) -> StepEnergies:
-        """Of several steps."""
+        """Energies of several time steps together."""
         return StepEnergies(*np.sum([astuple(step) for step in steps], axis=0).tolist())
 
     @property
     def left(self) -> float:
-        """What contact and rotation do not account for."""
+        """Unbalanced energy: rotation − given − friction − stored."""
         return self.rotation - self.given - self.friction - self.stored
 
 
 @dataclass(frozen=True)
 class StepEnd:
-    """What the balance of the next time step begins with."""
+    """End of a time step, with which the balance of the next one begins."""
 
     acceleration: Floats
-    """(m + 1,) at the begin of the step."""
+    """Acceleration (m + 1,) of modes and ψ at the start of the step."""
     forces: Floats
-    """p (m + 1,) at its end."""
+    """Forces p (m + 1,) on modes and ψ at the end of the step."""
     damping: Floats
-    """D v (m + 1,) at its end."""
+    """Damping forces D v (m + 1,) at the end of the step."""
     powers: tuple[float, float]
-    """Of rotation and of friction in the nominal sliding at its end, per radian of the pinion [N·mm; N in 2D]."""
+    """Work of rotation, and of friction in the nominal sliding, per radian of the pinion at the end of the step [N·mm;
+    N in 2D]."""
     motion: float
-    """Energy of modes and ψ as the scheme keeps it."""
+    """Energy of modes and ψ in the time scheme [N·mm; N in 2D]."""
     stored: float
-    """Energy of rest and contact."""
+    """Energy of the residual static compliance and of the contact [N·mm; N in 2D]."""
     converted: float = 0.0
-    """What `motion` is more than before the length of the steps changed."""
+    """Increase of `motion` as the length of the steps changed [N·mm; N in 2D]."""
 
     def in_steps_of(self, energy: SchemeEnergy, state: MotionState, before: Floats) -> StepEnd:
-        """The same for a step of another length, with the energy of its scheme: `state` and the acceleration one step
-        before it (m + 1,) are those of that length."""
+        """End of the step for a next one of another length, with the energy of its scheme. state, before: motion, and
+        acceleration (m + 1,) one step before it, converted to that length."""
         motion = energy.of(state, before)
         return replace(self, acceleration=before, motion=motion, converted=motion - self.motion)
 
     def earlier(self, pair: MovingPair) -> StepEnd:
-        """The same a pitch earlier, where the other teeth stand as these do. Energies are the same."""
+        """End of the step with the teeth renumbered by one pitch. Energies stay the same."""
         acceleration, forces, damping = (
             pair.earlier(each, 1) for each in (self.acceleration, self.forces, self.damping)
         )
@@ -134,26 +135,26 @@ class StepEnd:
 
 @dataclass(frozen=True)
 class StepBalance:
-    """The end of a time step, as its balances see it."""
+    """A solved time step, for its balances of momentum, reaction and energy."""
 
     step: PairStep
-    """From the state at its begin."""
+    """Equations of the step, from the state at its start."""
     span: float
-    """Nominal rotation of the pinion in it [rad]."""
+    """Nominal rotation of the pinion in the step [rad]."""
     state: MotionState
-    """At its end."""
+    """Position, velocity and acceleration of modes and ψ at the end of the step."""
     result: PositionResult
-    """Of the position at its end."""
+    """Result of the position at the end of the step."""
     sums: NodalSums
-    """Of its contact forces."""
+    """Nodal sums of the contact forces at the end of the step."""
     stored: float
-    """Energy of rest and contact, see `stored_energy`."""
+    """Energy of the residual static compliance and of the contact [N·mm; N in 2D], see `stored_energy`."""
     slip_work: float
     """Work of friction beyond that in the nominal sliding, see `work_beyond_nominal`."""
 
     @cached_property
     def end(self) -> StepEnd:
-        """What the next balance begins with."""
+        """End of the step, with which the next balance begins."""
         pair = self.step.pair
         powers = self.sums.torques[0] - self.sums.torques[1] / pair.model.pair.ratio, self.result.friction_loss
         begin = self.step.step.state.acceleration
@@ -161,7 +162,7 @@ class StepBalance:
         return StepEnd(begin, self._forces, damping, powers, self._energy.of(self.state, begin), self.stored)
 
     def energies(self, before: StepEnd | None) -> StepEnergies:
-        """Of the step. before: None where there is no step before."""
+        """Energies of the step. before: None where there is no step before."""
         drive, lever = self.step.pair.drive, self.step.pair.lever
         passed = drive.torque / lever * self.step.pair.base_radii[0] * self.span
         if before is None:
@@ -177,7 +178,7 @@ class StepBalance:
         )
 
     def residuals(self, before: StepEnd | None) -> Residuals:
-        """Of all balances. before: as in `energies`."""
+        """Residuals of all balances of the step. before: None where there is no step before."""
         energies = self.energies(before)
         motion = UNKNOWN if before is None else self._motion(energies, before)
         exchange = abs(energies.left) / energies.passed
@@ -197,7 +198,7 @@ class StepBalance:
 
     @cached_property
     def _forces(self) -> Floats:
-        """p (m + 1,)."""
+        """Forces p (m + 1,) on modes and ψ by the nodal sums."""
         drive = self.step.pair.drive
         against = [load - taken for load, taken in zip(drive.torques, self.sums.torques)]
         return np.append(self.sums.modal, np.dot(drive.shares, against))
@@ -215,7 +216,7 @@ class StepBalance:
 
     @property
     def _force(self) -> float:
-        """Of the contact, or of the load where that is larger."""
+        """Contact force, or the load where that is larger, to which residuals are relative."""
         load = self.step.pair.drive.torque / self.step.pair.lever
         return max(load, float(np.linalg.norm(self.sums.resultants[0])))
 
@@ -234,7 +235,8 @@ class StepBalance:
 
 
 def stored_energy(pair: MovingPair, at: SearchedContact, found: Equilibrium) -> float:
-    """½ fᵀC_r f of both gears beyond their modes, and ∫ (λ²/γ + τ²/γ_t)/2 of the contact [N·mm; N in 2D]."""
+    """Stored energy ½ fᵀC_r f of both gears beyond their modes, and ∫ (λ²/γ + τ²/γ_t)/2 of the contact [N·mm; N in
+    2D]."""
     if not found.force.any():
         return 0.0
     f, operator = with_components(found.force, at.k).ravel(), at.contact.operator

@@ -16,13 +16,14 @@ AROUND, TILTS, DIRECTIONS = 90, 18, 12
 
 
 def von_mises(stress: Floats) -> Floats:
-    """(k,) [MPa]."""
+    """Von Mises stress (k,) of a history [MPa]."""
     deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
     return np.asarray(np.sqrt(1.5 * np.einsum("kij,kij->k", deviator, deviator)))
 
 
 def largest_shear(stress: Floats) -> Floats:
-    """(k,) half of the difference of the largest and the smallest principal stress [MPa]."""
+    """Maximum shear stress (k,) of a history: half of the difference of the largest and the smallest principal stress
+    [MPa]."""
     principal = np.linalg.eigvalsh(stress)
     return np.asarray(0.5 * (principal[:, 2] - principal[:, 0]))
 
@@ -65,7 +66,7 @@ def fatemi_socie(stress: Floats, shear_modulus: float, yield_stress: float, fact
 
 
 def plane_angles() -> Floats:
-    """(a, 2) of the planes that are tried: angle of the normal from x in the x-z plane, and its tilt towards y [rad].
+    """Angles (a, 2) of the planes that are tried: of the normal from x in the x-z plane, and its tilt towards y [rad].
     Stress that is even in y has the same on planes tilted the other way."""
     around = np.linspace(0.0, np.pi, AROUND, endpoint=False)
     tilts = np.linspace(0.0, 0.5 * np.pi, TILTS, endpoint=False)

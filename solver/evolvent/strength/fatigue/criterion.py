@@ -1,16 +1,16 @@
-"""The criteria by name, the places at which they are looked for, and the slopes of their S-N lines."""
+"""Fatigue criteria by name, the places at which they are evaluated, and the slopes of their S-N lines."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 SURFACE, BELOW = "surface", "below"
-"""Depth 0; the largest value from DEEP down."""
+"""Names of places: depth 0, and the largest value from `DEEP` down."""
 SHALLOW = {f"{depth:g} half-widths": depth for depth in (0.02, 0.05, 0.1)}
 """Name -> depth over the half-width of the contact. Stress by friction falls steeply there and that by pressure rises:
 the largest value over a range of depths would be that at one of its ends."""
 DEEP = 0.2
-"""Half-widths at which `BELOW` begins."""
+"""Depth at which `BELOW` begins, in half-widths of the contact."""
 NEAR_SURFACE = SURFACE, *SHALLOW
 EVERYWHERE = *NEAR_SURFACE, BELOW
 
@@ -20,26 +20,26 @@ class Criterion:
     """A measure of what fatigues a material point. Lives follow N ∝ value^−m."""
 
     name: str
-    """In tables."""
+    """Name in tables."""
     words: str
-    """In pictures and on pages."""
+    """Name in pictures and on pages."""
     unit: str = "MPa"
-    """Empty for a strain."""
+    """Unit of the values; empty for a strain."""
     places: tuple[str, ...] = EVERYWHERE
-    """Where it is of interest."""
+    """Places at which the criterion is of interest."""
     exponent: float | None = None
-    """m of its own S-N line; None without a source."""
+    """Exponent m of the criterion's own S-N line; None without a source."""
     source: str = ""
-    """Of the exponent."""
+    """Source of the exponent."""
     exponent_place: str = ""
     """Place of the values that the source speaks of."""
     pressure_power: float = 1.0
-    """Largest power with which it grows with the contact pressure."""
+    """Largest power with which the criterion grows with the contact pressure."""
     of_history: bool = True
-    """Whether it is one of the stress while the contact passes."""
+    """Whether the criterion is one of the stress while the contact passes."""
 
     def slopes_at(self, place: str) -> tuple[tuple[float, str], ...]:
-        """m and its source, where there is one that speaks of values at this place."""
+        """Exponent m and its source, where there is a source for values at this place."""
         return ((self.exponent, self.source),) if self.exponent is not None and place == self.exponent_place else ()
 
 
@@ -60,6 +60,6 @@ FATEMI_SOCIE = Criterion("fatemi_socie", "Fatemi-Socie", unit="", pressure_power
 
 
 def criteria_of(yield_stress: float | None) -> list[Criterion]:
-    """Those that are computed. yield_stress: σ_y of the material [MPa], None where it is not known."""
+    """Criteria that are computed. yield_stress: σ_y of the material [MPa], None where it is not known."""
     always = [CONTACT_PRESSURE, ORTHOGONAL_SHEAR, MAXIMUM_SHEAR, VON_MISES, DANG_VAN, TENSION]
     return always if yield_stress is None else [*always, FATEMI_SOCIE]

@@ -1,4 +1,4 @@
-"""How far stress below the flanks depends on the half-ellipses that stand for the pressures as solved."""
+"""Error of the stress below the flanks by half-ellipses in place of the pressures as solved."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evolvent.strength.fatigue.half_plane import HertzTractions, LineForces, pla
 from evolvent_meshes.arrays import Floats
 
 PLACES, DEPTHS = np.linspace(-1.5, 1.5, 61), np.array([0.6, 0.8, 1.0, 1.3])
-"""In half-widths, around the largest shear stress of a line contact, at 0.786 below its middle."""
+"""Places and depths in half-widths, around the largest shear stress of a line contact, at 0.786 below its middle."""
 
 
 def shear_differences(positions: Sequence[LoadedPosition], inner: tuple[float, float], poisson: float) -> Floats:

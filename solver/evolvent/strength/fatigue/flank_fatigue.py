@@ -44,27 +44,27 @@ INNER, OUTER, REACH = 721, 360, 10.0
 """Instants of a history while the point is below the contact, and before as after, up to this distance in half-widths.
 With a third of them the criterion of Dang Van, which is the most sensitive, is 0.1 % off."""
 COARSER = 3
-"""Every such instant is taken for the criterion of Fatemi and Socie, which looks at many planes."""
+"""Stride of a history's instants for the criterion of Fatemi and Socie, which is evaluated on many planes."""
 RATIOS = 32
 """Steps between no friction and μ, to which the friction of slices that stick in part is rounded."""
 
 
 @dataclass(frozen=True)
 class FatigueMaterial:
-    """What the criteria need to know of a flank."""
+    """Material data of a flank for the criteria."""
 
     poissons_ratio: float
-    """ν."""
+    """Poisson's ratio ν."""
     shear_modulus: float
-    """G [MPa]."""
+    """Shear modulus G [MPa]."""
     yield_stress: float | None
-    """σ_y of the criterion of Fatemi and Socie [MPa]; None leaves it out."""
+    """Yield stress σ_y of the criterion of Fatemi and Socie [MPa]; None leaves it out."""
     tension_factor: float
-    """a of the criterion of Dang Van under hydrostatic tension."""
+    """Factor a of the criterion of Dang Van under hydrostatic tension."""
     compression_factor: float
-    """The same under compression."""
+    """Factor a of the criterion of Dang Van under hydrostatic compression."""
     normal_factor: float
-    """k of the criterion of Fatemi and Socie."""
+    """Factor k of the criterion of Fatemi and Socie."""
 
 
 @dataclass(frozen=True)
@@ -72,19 +72,19 @@ class FlankFatigue:
     """Criteria at n points of a flank and m depths below each."""
 
     loads: FlankLoads
-    """What loads the points."""
+    """Pressure and friction at the n points."""
     depths: Floats
-    """(m,) over the half-width of the contact."""
+    """Depths (m,) over the half-width of the contact."""
     values: dict[Criterion, Floats]
-    """(n, m) in the unit of each criterion."""
+    """Values (n, m) of each criterion, in its unit."""
 
     @property
     def depths_mm(self) -> Floats:
-        """(n, m) [mm]."""
+        """Depths (n, m) [mm]."""
         return np.outer(self.loads.half_width, self.depths)
 
     def at(self, place: str) -> Bools:
-        """(m,) which depths belong to a place. None does where `depths` lacks it."""
+        """Whether each depth (m,) belongs to a place. No depth does where `depths` lacks it."""
         if place == BELOW:
             return np.asarray(self.depths >= DEEP)
         return np.isclose(self.depths, SHALLOW.get(place, 0.0), rtol=0.0, atol=1e-9)
@@ -93,7 +93,8 @@ class FlankFatigue:
 def flank_fatigue(
     loads: FlankLoads, friction: float, depths: Sequence[float], material: FatigueMaterial
 ) -> FlankFatigue:
-    """Of one gear. friction: μ of the contact solution. depths: over the half-width, 0 the surface."""
+    """Fatigue criteria of the flank of one gear. friction: μ of the contact solution. depths: over the half-width, 0
+    the surface."""
     steps = np.minimum(np.round(loads.friction / max(friction, 1e-300) * RATIOS), RATIOS)
     values = {each: np.zeros((len(loads.peak), len(depths))) for each in criteria_of(material.yield_stress)}
     for step in np.unique(steps):
@@ -126,8 +127,8 @@ def _criteria(ratio: float, depth: float, peaks: Floats, material: FatigueMateri
 def _unit_passage(
     ratio: float, depth: float, material: FatigueMaterial
 ) -> tuple[dict[Criterion, float], Floats, Floats]:
-    """Below a contact of peak 1: what grows with the peak; amplitude of shear and tension on planes (a,), empty where
-    they are not needed."""
+    """Criteria below a contact of peak 1 that grow with the peak; amplitude of shear and tension on planes (a,), empty
+    where they are not needed."""
     x, nothing = passage(), np.zeros(0)
     history = plane_strain(HertzTractions(1.0, 1.0, ratio).stress(x, np.full_like(x, depth)), material.poissons_ratio)
     unit = {

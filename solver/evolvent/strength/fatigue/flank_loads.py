@@ -1,4 +1,4 @@
-"""What loads the points of the flanks over the engagement of a tooth.
+"""Pressure and friction at the points of the flanks over the engagement of a tooth.
 
 While the contact passes over a point of a flank its pressure hardly changes, nor does its friction where it slides one
 way. So the history there is that of the tractions at the moment when the contact line lies over it, moved on along the
@@ -24,26 +24,26 @@ from evolvent_meshes.arrays import Floats, Ints
 
 @dataclass(frozen=True)
 class FlankLoads:
-    """The n slices of all positions of a pitch that are loaded between the tip-edge zones, away from the starts of
-    linear reliefs."""
+    """Loads of the n slices of all positions of a pitch that are loaded between the tip-edge zones, away from the
+    starts of linear reliefs."""
 
     place: Ints
-    """(n, 3) position in the pitch, tooth pair and layer of the face: the same points at other friction coefficients
+    """Position in the pitch, tooth pair and layer of the face (n, 3): the same points at other friction coefficients
     have the same."""
     roll_distance: Floats
-    """(n,) distance ξ of the contact line from the pitch point along the line of action [mm]."""
+    """Distance ξ (n,) of the contact line from the pitch point along the line of action [mm]."""
     height: Floats
-    """(n,) of the slice's middle [mm]."""
+    """Axial position (n,) of the slice's middle [mm]."""
     peak: Floats
-    """(n,) p0 of the fitted half-ellipse of pressure, averaged with neighbours as in reported pressures [MPa]."""
+    """Peak p0 (n,) of the fitted half-ellipse of pressure, averaged with neighbours as in reported pressures [MPa]."""
     half_width: Floats
-    """(n,) b across the contact line with the slice's line load, 2F/(π p0) [mm]."""
+    """Half-width b (n,) across the contact line with the slice's line load, 2F/(π p0) [mm]."""
     friction: Floats
-    """(n,) tangential force over normal force: μ where all of the slice slides, less where it sticks."""
+    """Tangential force over normal force (n,): μ where all of the slice slides, less where it sticks."""
 
     @staticmethod
     def joined(parts: Sequence[FlankLoads]) -> FlankLoads:
-        """Those of several positions in one."""
+        """Loads of several positions together."""
         return FlankLoads(*(np.concatenate([getattr(p, each.name) for p in parts]) for each in fields(FlankLoads)))
 
 
@@ -52,16 +52,16 @@ class LoadedPosition:
     """A position and its contact in slices."""
 
     index: int
-    """In the pitch."""
+    """Number of the position in the pitch."""
     result: PositionResult
-    """The solution."""
+    """Contact solution of the position."""
     cut: Slices
-    """Its slices."""
+    """Slices of the contact."""
     heights: Floats
-    """(m,) z of the pinion flank's nodes [mm]."""
+    """Axial positions z (m,) of the pinion flank's nodes [mm]."""
 
     def loads(self, inner: tuple[float, float]) -> FlankLoads:
-        """Of the slices between the tip-edge zones, away from the starts of linear reliefs. inner: see
+        """Loads of the slices between the tip-edge zones, away from the starts of linear reliefs. inner: see
         `RunData.inner_path`."""
         chosen = self._chosen(inner)
         cut, peak = self.cut, pooled_peaks(self.cut)[chosen]
@@ -71,8 +71,8 @@ class LoadedPosition:
         return FlankLoads(place, cut.roll_distance[chosen], cut.z[chosen], peak, half, self._friction[chosen])
 
     def solved_and_fitted(self, inner: tuple[float, float]) -> list[tuple[LineForces, HertzTractions]]:
-        """The forces of the same slices as solved, at their quadrature points, beside the fitted tractions, both about
-        the centre of pressure."""
+        """Forces of the slices of `loads` as solved, at their quadrature points, beside the fitted tractions, both
+        about the centre of pressure. inner: see `RunData.inner_path`."""
         own, number = self.loads(inner), self._numbers[2]
         found = []
         for k, slice_number in enumerate(self._chosen(inner)):
@@ -82,7 +82,7 @@ class LoadedPosition:
         return found
 
     def _solved(self, here: Ints, load: float) -> LineForces:
-        """Of a slice with points `here` and a line load [N/mm]."""
+        """Forces as solved of a slice with points `here` and a line load [N/mm]."""
         c = self.result.contact
         force = c.traction[here] * c.weights[here, None]
         force *= load / force[:, 0].sum()
@@ -100,7 +100,7 @@ class LoadedPosition:
 
     @cached_property
     def _friction(self) -> Floats:
-        """(slices,) size of the tangential force over the normal force."""
+        """Tangential force over normal force (slices,)."""
         c, number = self.result.contact, self._numbers[2]
         force = c.traction * c.weights[:, None]
         normal, *tangential = (np.bincount(number, column) for column in force.T)

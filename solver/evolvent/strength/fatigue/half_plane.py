@@ -19,7 +19,7 @@ import numpy as np
 from evolvent_meshes.arrays import Complexes, Floats
 
 Integrals = tuple[Complexes, Complexes]
-"""∫ v/(w − t) dt and ∫ v/(w − t)² dt (k,) of a traction v."""
+"""Integrals ∫ v/(w − t) dt and ∫ v/(w − t)² dt (k,) of a traction v."""
 SURFACE = 1e-14
 """Depth over half-width at which stress at the surface is evaluated, as the integrals are singular at the contact's
 edges."""
@@ -30,14 +30,15 @@ class HertzTractions:
     """Hertz' half-ellipse of pressure, and friction in a constant ratio to it."""
 
     half_width: float
-    """b [mm]."""
+    """Half-width b of the contact [mm]."""
     peak: float
-    """p0 [MPa]."""
+    """Peak pressure p0 [MPa]."""
     friction: float
     """Tangential traction on the body towards +x over the pressure: μ where the contact slides."""
 
     def stress(self, x: Floats, z: Floats) -> Floats:
-        """(k, 3) σ_x, σ_z, τ_xz [MPa] at places x, z (k,) from its middle, z >= 0 into the body [mm]."""
+        """Stresses σ_x, σ_z, τ_xz (k, 3) [MPa] at places x, z (k,) from the contact's middle, z >= 0 into the body
+        [mm]."""
         depth = np.maximum(z, SURFACE * self.half_width)
         u = (x + 1j * depth) / self.half_width
         root = np.sqrt(u - 1.0) * np.sqrt(u + 1.0)  # the branch that cancels u at infinity
@@ -47,18 +48,18 @@ class HertzTractions:
 
 @dataclass(frozen=True)
 class LineForces:
-    """Forces per length on lines of the surface, n of them: what a contact solution has at its quadrature points."""
+    """Forces per length on n lines of the surface, such as those of a contact solution at its quadrature points."""
 
     places: Floats
-    """x (n,) [mm]."""
+    """Places x (n,) of the lines [mm]."""
     pressing: Floats
-    """P (n,), into the body [N/mm]."""
+    """Normal forces P (n,), into the body [N/mm]."""
     dragging: Floats
-    """Q (n,), on the body towards +x [N/mm]."""
+    """Tangential forces Q (n,), on the body towards +x [N/mm]."""
 
     def stress(self, x: Floats, z: Floats) -> Floats:
-        """(k, 3) σ_x, σ_z, τ_xz [MPa] at places x, z (k,), z > 0 into the body [mm]; that of tractions where z is not
-        small beside the spacing."""
+        """Stresses σ_x, σ_z, τ_xz (k, 3) [MPa] at places x, z (k,), z > 0 into the body [mm]; those of tractions where
+        z is not small beside the spacing."""
         inverse: Complexes = np.reciprocal(x[:, None] - self.places + 1j * z[:, None])
         square = inverse**2
         P, Q = self.pressing.astype(complex), self.dragging.astype(complex)
@@ -66,7 +67,7 @@ class LineForces:
 
 
 def plane_strain(stress: Floats, poissons_ratio: float) -> Floats:
-    """(k, 3, 3) stress tensors, axes x, y, z, of σ_x, σ_z, τ_xz (k, 3)."""
+    """Stress tensors (k, 3, 3), axes x, y, z, of σ_x, σ_z, τ_xz (k, 3) in plane strain."""
     σx, σz, τ = stress.T
     full = np.zeros((len(stress), 3, 3))
     full[:, 0, 0], full[:, 2, 2], full[:, 1, 1] = σx, σz, poissons_ratio * (σx + σz)
@@ -75,7 +76,7 @@ def plane_strain(stress: Floats, poissons_ratio: float) -> Floats:
 
 
 def _stress(depth: Floats, pressure: Integrals, friction: Integrals) -> Floats:
-    """(k, 3) σ_x, σ_z, τ_xz [MPa] at depths (k,) [mm]."""
+    """Stresses σ_x, σ_z, τ_xz (k, 3) [MPa] at depths (k,) [mm]."""
     (p1, p2), (q1, q2) = pressure, friction
     across = depth * p2.real - p1.imag, depth * q2.real - q1.imag
     σx = -across[0] - (2.0 * q1.real + depth * q2.imag)

@@ -13,7 +13,7 @@ import numpy as np
 from evolvent_meshes.arrays import Floats
 
 CHUNK = 2_000_000
-"""Places times forces that are evaluated at once."""
+"""Number of places times forces that are evaluated at once."""
 
 
 @dataclass(frozen=True)
@@ -21,14 +21,14 @@ class PointForces:
     """Forces at n points of the surface z = 0."""
 
     places: Floats
-    """x, y (n, 2) [mm]."""
+    """Points x, y (n, 2) of the forces [mm]."""
     forces: Floats
-    """(n, 3) along x, y, z, the last into the body [N]."""
+    """Forces (n, 3) along x, y, z, the last into the body [N]."""
     poissons_ratio: float
-    """ν of the body."""
+    """Poisson's ratio ν of the body."""
 
     def stress(self, at: Floats) -> Floats:
-        """(k, 3, 3) stress tensors [MPa] at places (k, 3), z > 0 into the body [mm]; that of tractions where z is not
+        """Stress tensors (k, 3, 3) [MPa] at places (k, 3), z > 0 into the body [mm]; those of tractions where z is not
         small beside the spacing of the forces."""
         parts = np.array_split(at, max(1, len(at) * len(self.places) // CHUNK))
         return np.concatenate([self._stress(each) for each in parts])
@@ -46,7 +46,7 @@ class PointForces:
 
 
 def _boussinesq(x: Floats, y: Floats, z: Floats, ν: float) -> Floats:
-    """2π times σ_x, σ_y, σ_z, τ_xy, τ_xz, τ_yz (6, k, n) by unit forces into the body."""
+    """Stresses σ_x, σ_y, σ_z, τ_xy, τ_xz, τ_yz (6, k, n), times 2π, by unit forces into the body."""
     ρ = np.sqrt(x**2 + y**2 + z**2)
     s, cubed, fifth = ρ + z, ρ**3, 3.0 / ρ**5
     even, bent = z / cubed - 1.0 / (ρ * s), (2.0 * ρ + z) / (cubed * s**2)
@@ -59,7 +59,7 @@ def _boussinesq(x: Floats, y: Floats, z: Floats, ν: float) -> Floats:
 
 
 def _cerruti(x: Floats, y: Floats, z: Floats, ν: float) -> Floats:
-    """The same by unit forces along x."""
+    """Stresses σ_x, σ_y, σ_z, τ_xy, τ_xz, τ_yz (6, k, n), times 2π, by unit forces along x."""
     ρ = np.sqrt(x**2 + y**2 + z**2)
     s, cubed, fifth = ρ + z, ρ**3, 3.0 / ρ**5
     first, bent = 1.0 / (ρ * s**2), 1.0 / (cubed * s**2) + 2.0 / (ρ**2 * s**3)

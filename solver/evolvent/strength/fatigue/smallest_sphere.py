@@ -16,11 +16,11 @@ import numpy as np
 from evolvent_meshes.arrays import Floats
 
 ROUNDING = 1e-10
-"""Over the size of the set: what lies so little outside lies on the sphere, and what is thinner is flat."""
+"""Tolerance over the size of the set: points so little outside lie on the sphere, and thinner sets are flat."""
 
 
 def centre(points: Floats) -> Floats:
-    """Its centre (d,), of points (n, d)."""
+    """Centre (d,) of the smallest sphere that holds points (n, d)."""
     middle = points.mean(axis=0)
     size, axes = np.linalg.svd(points - middle, full_matrices=False)[1:]
     axes = axes[size > ROUNDING * max(size[0], 1e-300)]
@@ -30,7 +30,7 @@ def centre(points: Floats) -> Floats:
 
 
 def _centre(points: Floats) -> Floats:
-    """The same, of points that span their space."""
+    """Centre (d,) of the smallest sphere that holds points (n, d) which span their space."""
     tolerance = ROUNDING * float(np.abs(points).max())
     held = points[:1]
     at, radius = held[0], 0.0
@@ -43,7 +43,7 @@ def _centre(points: Floats) -> Floats:
 
 
 def _of_few(held: Floats, further: Floats, tolerance: float) -> tuple[Floats, float, Floats]:
-    """Centre and radius of the smallest sphere that holds a few points and one that lies outside theirs, and the points
+    """Centre and radius of the smallest sphere that holds a few points and one outside their sphere, and the points
     that determine it: the further one is among them."""
     every = np.vstack([held, further])
     spheres = []
@@ -58,7 +58,7 @@ def _of_few(held: Floats, further: Floats, tolerance: float) -> tuple[Floats, fl
 
 
 def _subsets(held: Floats) -> Iterator[Floats]:
-    """Those of at least one point, and at most as many as the dimension."""
+    """Subsets of points, of at least one, and at most as many as the dimension."""
     for count in range(1, min(held.shape) + 1):
         for chosen in combinations(range(len(held)), count):
             yield held[list(chosen)]

@@ -1,4 +1,4 @@
-"""What the figures of contact fatigue rest on."""
+"""Facts on the contact solution on which the figures of contact fatigue rest."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class FatigueFacts:
     """An entry of fatigue.json: a friction coefficient."""
 
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     points: int
     """Points of each flank at which criteria are evaluated: slices of the contact at all positions."""
     left_out_percent: float
@@ -34,21 +34,21 @@ class FatigueFacts:
     near_reversal_percent: float
     """Points of the pinion near which friction reverses: histories do not hold there (near_friction_reversal)."""
     largest_pressure_MPa: float
-    """Of all points."""
+    """Largest contact pressure of all points."""
     largest_pressure_MPa_error: float
     """Error bar of a run's largest pressure; null without a coarse companion (`output.error_bars`)."""
     pressure_over_shear_yield: float | None
-    """That pressure over σ_y/√3; null without fatigue.yield_stress_MPa. A line contact yields above 3.1; above 4.0,
-    less with friction, it goes on yielding with each passage (Johnson, Contact Mechanics, 1985, 9.2)."""
+    """Largest contact pressure over σ_y/√3; null without fatigue.yield_stress_MPa. A line contact yields above 3.1;
+    above 4.0, less with friction, it goes on yielding with each passage (Johnson, Contact Mechanics, 1985, 9.2)."""
     mises_over_yield: float | None
-    """Largest von Mises stress over σ_y, likewise."""
+    """Largest von Mises stress over σ_y; null without fatigue.yield_stress_MPa."""
     fitted_shear_median_percent: float
-    """Pressures enter as fitted half-ellipses. Largest shear stress from 0.6 to 1.3 half-widths below a slice under the
-    pressures and friction as solved over that under the half-ellipse: the median difference."""
+    """Median error by half-ellipses fitted to the pressures: largest shear stress from 0.6 to 1.3 half-widths below a
+    slice under the pressures and friction as solved, over that under the half-ellipse, less 1."""
     fitted_shear_most_percent: float
-    """Nine in ten of these differences are at most so large."""
+    """Size of the error by fitted half-ellipses that nine in ten slices do not exceed."""
     pinion_pitch_diameter_mm: float
-    """Of the pinion's working pitch circle, at which the flanks do not slide."""
+    """Diameter of the pinion's working pitch circle, at which the flanks do not slide."""
 
 
 FATIGUE_FACTS = Table("fatigue.json", FatigueFacts)
@@ -64,7 +64,7 @@ def fatigue_facts(
     inner: tuple[float, float],
     materials: Materials,
 ) -> FatigueFacts:
-    """At one friction coefficient. inner: see `RunData.inner_path`; materials: of pinion and wheel."""
+    """Facts at one friction coefficient. inner: see `RunData.inner_path`; materials: of pinion and wheel."""
     loaded = sum(int((each.cut.line_load > 0.0).sum()) for each in positions)
     pinion = found.gears[Member.PINION].loads
     peaks, reverses = pinion.peak, near_reversal(pair, Member.PINION, pinion, found.friction)
@@ -86,7 +86,7 @@ def fatigue_facts(
 
 
 def warnings_of(facts: FatigueFacts, found: FrictionFatigue) -> list[str]:
-    """Sentences on what the figures of a friction coefficient do not hold for."""
+    """Sentences on the figures of a friction coefficient that do not hold, and why."""
     said, name = [], f"μ = {facts.friction:g}"
     loads = found.gears[0].loads
     if len(loads.peak) and found.at_zone_end(float(loads.roll_distance[np.argmax(loads.peak)])):

@@ -73,7 +73,8 @@ def _has_width(points: Sequence[FatigueMapRow]) -> bool:
 
 
 def _over_flank(axes: Axes, points: Sequence[FatigueMapRow], scale: Normalize) -> None:
-    """Largest below the surface, over face and diameter; over the diameter alone in plane strain."""
+    """Dang Van's criterion, the largest below the surface, over face and diameter; over the diameter alone in plane
+    strain."""
     columns = [(row.height_mm, row.diameter_mm, row.below) for row in points]
     height, diameter, values = np.array(columns).T
     axes.set_title(f"{DANG_VAN.words}: largest below {DEEP:g} half-widths", fontsize=10)
@@ -87,7 +88,8 @@ def _over_flank(axes: Axes, points: Sequence[FatigueMapRow], scale: Normalize) -
 
 
 def _section(axes: Axes, rows: Sequence[FatigueDepthRow], half_width: float, scale: Normalize) -> None:
-    """Over depth and diameter. rows: point by point; half_width: of the contact, median of the flank [mm]."""
+    """Dang Van's criterion over depth and diameter. rows: point by point; half_width: of the contact, median of the
+    flank [mm]."""
     depths = np.linspace(0.0, 1e3 * half_width * SHOWN, DEPTHS)
     count = len({row.depth_over_half_width for row in rows})
     points = [rows[k : k + count] for k in range(0, len(rows), count)]

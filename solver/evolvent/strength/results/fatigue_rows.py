@@ -1,4 +1,4 @@
-"""Lines of the tables of contact fatigue: largest values, all over the flank, and below its most loaded point."""
+"""Rows of the tables of contact fatigue: largest values, all over the flank, and below its most loaded point."""
 
 from __future__ import annotations
 
@@ -14,52 +14,55 @@ class FatigueRow:
     gear: str
     """pinion or wheel. Both flanks bear the same tractions: with one material the values are the same."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     criterion: str
-    """Its name."""
+    """Name of the criterion."""
     place: str
-    """surface; 0.02, 0.05 and 0.1 half-widths of the contact below it; below, from 0.2 half-widths down."""
+    """Depth: surface; 0.02, 0.05 and 0.1 half-widths of the contact below it; below, from 0.2 half-widths down."""
     value: float
-    """Largest over the flank at this depth, and for below over these depths. NaN where nothing was evaluated."""
+    """Largest value over the flank at this depth, and for below over these depths. NaN where nothing was evaluated."""
     unit: str
-    """MPa; empty for Fatemi-Socie, which is a strain."""
+    """Unit of the value: MPa; empty for Fatemi-Socie, which is a strain."""
     value_error: float
-    """Its estimated error by the contact pressure: that of the largest one over itself times the value, twice that of
-    Fatemi-Socie. NaN without a coarse companion (`output.error_bars`)."""
+    """Estimated error of the value by the contact pressure: that of the largest pressure over itself times the value,
+    twice that of Fatemi-Socie. NaN without a coarse companion (`output.error_bars`)."""
     diameter_mm: float
-    """Where it is largest: diameter of the gear."""
+    """Diameter of the gear at which the value is largest."""
     height_mm: float
-    """Axial position there, 0 at mid-face."""
+    """Axial position of the largest value, 0 at mid-face."""
     depth_um: float
-    """Depth below the flank there."""
+    """Depth of the largest value below the flank."""
     roll_distance_mm: float
     """Distance of the contact from the pitch point along the path of contact, negative towards the pinion's root."""
     pressure_MPa: float
-    """Contact pressure above that point."""
+    """Contact pressure above the point of the largest value."""
     at_zone_end: bool
-    """Whether it lies beside the zone of a tip edge, which is left out: it may be larger further in, and where it lies
-    is no prediction of where damage begins."""
+    """Whether the largest value lies beside the zone of a tip edge, which is left out: it may be larger further in, and
+    where it lies is no prediction of where damage begins."""
     near_friction_reversal: bool
     """Whether the contact passes the pitch line while it is within two half-widths of the point, or does not slide as a
     whole there: friction changes then while the contact passes, and the history, which has that of one position, does
-    not hold. Never of contact pressure."""
+    not hold. Always false for contact pressure."""
     at_depth_limit: bool
-    """Whether, below, it is largest at the first or the last depth: it is no maximum over the depth then."""
+    """Whether the value, of place below, is largest at the first or the last depth: it is no maximum over the depth
+    then."""
     point_roll_distance_mm: float
-    """Where friction coefficients are compared: the point of the flank at which the criterion is largest at the first
-    one, of those that both have. NaN where the criterion is below 1e-4 of the contact pressure there."""
+    """Roll distance of the point at which friction coefficients are compared: where the criterion is largest at the
+    first one, of the points that both have. NaN where the criterion is below 1e-4 of the contact pressure there."""
     point_value: float
-    """Value at this point, and for below largest over the depths."""
+    """Value at the point of comparison, and for below largest over the depths."""
     point_depth_um: float
-    """Depth of that."""
+    """Depth of the value at the point of comparison."""
     change_percent: float
-    """Of the value at this point over that at the first friction coefficient; NaN as above."""
+    """Change of the value at the point of comparison over that at the first friction coefficient; NaN without such a
+    point."""
     change_percent_error: float
-    """How far the coarse companion's is from it; NaN without one."""
+    """Difference of `change_percent` from the coarse companion's; NaN without one."""
     change_at_points_percent: float
-    """Median over the points of the flank of the same change, of each point's value at this place; NaN as above."""
+    """Median over the points of the flank of the change of each point's value at this place over that at the first
+    friction coefficient; NaN where the criterion is negligible at all of them."""
     change_at_points_percent_error: float
-    """How far the coarse companion's is from it; NaN without one."""
+    """Difference of `change_at_points_percent` from the coarse companion's; NaN without one."""
 
 
 @dataclass(frozen=True)
@@ -70,21 +73,21 @@ class FatigueLifeRow:
     gear: str
     """pinion or wheel."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     criterion: str
-    """Its name."""
+    """Name of the criterion."""
     place: str
-    """As in fatigue.csv."""
+    """Depth, as in fatigue.csv."""
     exponent: float
-    """m."""
+    """Exponent m of the S-N line."""
     source: str
-    """Of the exponent; empty for those of fatigue.exponents."""
+    """Source of the exponent; empty for those of fatigue.exponents."""
     life_ratio: float
-    """At one point of the flank, `point_roll_distance_mm` of fatigue.csv, which may lie beside a tip-edge zone
-    (`at_zone_end` of the first coefficient there). NaN where the criterion is negligible at the first coefficient;
-    infinite where it is at this one alone."""
+    """Ratio of lives at one point of the flank, `point_roll_distance_mm` of fatigue.csv, which may lie beside a
+    tip-edge zone (`at_zone_end` of the first coefficient there). NaN where the criterion is negligible at the first
+    coefficient; infinite where it is at this one alone."""
     life_ratio_at_points: float
-    """By the median change at the points of the flank, each compared with itself; quote both."""
+    """Ratio of lives by the median change at the points of the flank, each compared with itself; quote both."""
 
 
 @dataclass(frozen=True)
@@ -94,36 +97,36 @@ class FatigueMapRow:
     gear: str
     """pinion or wheel."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     diameter_mm: float
-    """Of the point."""
+    """Diameter of the gear at the point."""
     height_mm: float
-    """Axial position, 0 at mid-face."""
+    """Axial position of the point, 0 at mid-face."""
     roll_distance_mm: float
     """Distance of the contact from the pitch point along the path of contact, negative towards the pinion's root."""
     pressure_MPa: float
     """Peak contact pressure when the contact passes."""
     half_width_mm: float
-    """Of the contact then."""
+    """Half-width of the contact when it passes."""
     traction_coefficient: float
-    """Net tangential force over normal force then: μ where the contact slides, less where it sticks or the pitch line
-    crosses the slice."""
+    """Net tangential force over normal force when the contact passes: μ where it slides, less where it sticks or the
+    pitch line crosses the slice."""
     near_friction_reversal: bool
-    """As in fatigue.csv."""
+    """Whether friction reverses near the point, as in fatigue.csv."""
     criterion: str
-    """Its name."""
+    """Name of the criterion."""
     at_surface: float
     """Value at the surface, in the unit of fatigue.csv."""
     at_0_02: float
-    """At 0.02 half-widths below it; NaN for contact pressure."""
+    """Value at 0.02 half-widths below the surface; NaN for contact pressure."""
     at_0_05: float
-    """At 0.05 half-widths, likewise."""
+    """Value at 0.05 half-widths below the surface; NaN for contact pressure."""
     at_0_1: float
-    """At 0.1 half-widths, likewise."""
+    """Value at 0.1 half-widths below the surface; NaN for contact pressure."""
     below: float
-    """Largest from 0.2 half-widths down; NaN for contact pressure and tensile stress."""
+    """Largest value from 0.2 half-widths down; NaN for contact pressure and tensile stress."""
     depth_um: float
-    """Depth of that, likewise."""
+    """Depth of the largest value from 0.2 half-widths down; NaN for contact pressure and tensile stress."""
 
 
 @dataclass(frozen=True)
@@ -134,19 +137,19 @@ class FatigueDepthRow:
     gear: str
     """pinion or wheel."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     diameter_mm: float
-    """Of the point."""
+    """Diameter of the gear at the point."""
     height_mm: float
-    """Its axial position, 0 at mid-face."""
+    """Axial position of the point, 0 at mid-face."""
     criterion: str
-    """Its name."""
+    """Name of the criterion."""
     depth_um: float
-    """Below the flank."""
+    """Depth below the flank."""
     depth_over_half_width: float
-    """The same, over the half-width of the contact."""
+    """Depth below the flank, over the half-width of the contact."""
     value: float
-    """In the unit of fatigue.csv."""
+    """Value of the criterion, in the unit of fatigue.csv."""
 
 
 FATIGUE, FATIGUE_LIFE = Table("fatigue.csv", FatigueRow), Table("fatigue_life.csv", FatigueLifeRow)

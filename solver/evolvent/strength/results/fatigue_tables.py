@@ -19,13 +19,13 @@ from evolvent_meshes.gears.pair import GearPair
 
 
 def diameters(pair: GearPair, member: Member, roll_distance: Floats) -> Floats:
-    """Of the points of a gear's flank at roll distances ξ (n,), (n,) [mm]."""
+    """Diameters (n,) of a gear at the points of its flank with roll distances ξ (n,) [mm]."""
     on_line = pair.curvature_radii(roll_distance)[member]
     return np.asarray(2.0 * np.hypot(on_line, pair.gears[member].base_radius))
 
 
 def fatigue_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[FatigueRow]:
-    """Of both gears, at all friction coefficients."""
+    """Rows of fatigue.csv of both gears, at all friction coefficients."""
     for each in found:
         for member in Member:
             for criterion in each.gears[member].values:
@@ -35,7 +35,7 @@ def fatigue_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[F
 
 
 def life_rows(found: Sequence[FrictionFatigue], exponents: Sequence[float]) -> Iterator[FatigueLifeRow]:
-    """Of both gears, at all friction coefficients but the first."""
+    """Rows of fatigue_life.csv of both gears, at all friction coefficients but the first."""
     for each in found[1:]:
         for member in Member:
             own, first = each.gears[member], found[0].gears[member]
@@ -51,21 +51,22 @@ def life_rows(found: Sequence[FrictionFatigue], exponents: Sequence[float]) -> I
 
 
 def _lives(ratios: tuple[float, float], slope: float) -> tuple[float, float]:
-    """Infinite where nothing is left of a criterion, as of tension without friction; NaN where there was none."""
+    """Ratios of lives: infinite where nothing is left of a criterion, as of tension without friction; NaN where there
+    was none."""
     with np.errstate(divide="ignore", over="ignore"):
         at_point, at_points = np.power(ratios, -slope)
     return float(at_point), float(at_points)
 
 
 def map_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[FatigueMapRow]:
-    """Of both gears, at all friction coefficients, from the root of the pinion on."""
+    """Rows of fatigue_map.csv of both gears, at all friction coefficients, from the root of the pinion on."""
     for each in found:
         for member, own in zip(Member, each.gears):
             yield from _flank(pair, member, each.friction, own)
 
 
 def depth_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[FatigueDepthRow]:
-    """Of both gears, at all friction coefficients."""
+    """Rows of fatigue_depth.csv of both gears, at all friction coefficients."""
     for each in found:
         for member, own in zip(Member, each.gears):
             if not len(own.loads.peak):
@@ -76,7 +77,8 @@ def depth_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[Fat
 
 
 def section_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[FatigueDepthRow]:
-    """Dang Van's criterion of both gears, at all friction coefficients, from the root of the pinion on."""
+    """Rows of fatigue_section.csv: Dang Van's criterion of both gears, at all friction coefficients, from the root of
+    the pinion on."""
     for each in found:
         for member, own in zip(Member, each.gears):
             heights = np.unique(own.loads.height)
@@ -90,7 +92,7 @@ def section_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[F
 def _below(
     pair: GearPair, member: Member, found: FrictionFatigue, criterion: Criterion, k: int
 ) -> Iterator[FatigueDepthRow]:
-    """A criterion over the depth below point k of a flank."""
+    """Rows of a criterion over the depth below point k of a flank."""
     own = found.gears[member]
     here, diameter = _down_to_the_last(own, criterion), diameters(pair, member, own.loads.roll_distance[[k]])[0]
     for ratio, depth, value in zip(own.depths[here], own.depths_mm[k, here], own.values[criterion][k, here]):
@@ -102,7 +104,7 @@ def _below(
 
 
 def _down_to_the_last(own: FlankFatigue, criterion: Criterion) -> Bools:
-    """(m,) which depths are at most as deep as the deepest place at which a criterion is of interest."""
+    """Whether each depth (m,) is at most as deep as the deepest place at which a criterion is of interest."""
     if BELOW in criterion.places:
         return np.ones(len(own.depths), dtype=bool)
     return np.asarray(own.depths <= max(SHALLOW.get(place, 0.0) for place in criterion.places) + 1e-9)
@@ -188,7 +190,7 @@ def _change_percents(
 def _change_errors(
     member: Member, each: FrictionFatigue, criterion: Criterion, place: str, first: FrictionFatigue
 ) -> tuple[float, float]:
-    """Of both changes, in per cent: how far those of the coarse companion are away."""
+    """Differences of both changes from those of the coarse companion, in per cent."""
     if each.coarse is None or first.coarse is None:
         return math.nan, math.nan
     fine = _change_percents(each.gears[member], first.gears[member], criterion, place)

@@ -12,9 +12,10 @@ from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
 from evolvent_meshes.arrays import Floats
 
 NEGLIGIBLE = 1e-4
-"""Of the contact pressure: a stress below it is none. Changes over it, and lives by them, would have no meaning."""
+"""Stress over the contact pressure below which it counts as zero. Changes over it, and lives by them, would have no
+meaning."""
 BESIDE_ZONE = 0.02
-"""Of the path between the tip-edge zones: what lies so near to a zone is at its end."""
+"""Distance from a tip-edge zone within which a point counts as beside it, over the path between the zones."""
 
 
 @dataclass(frozen=True)
@@ -22,15 +23,15 @@ class FrictionFatigue:
     """Fatigue of both flanks at one friction coefficient."""
 
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     gears: tuple[FlankFatigue, FlankFatigue]
-    """Pinion and wheel."""
+    """Fatigue of the flanks of pinion and wheel."""
     pressure_error: float
     """Estimated error of the largest contact pressure over itself; NaN without a coarse companion."""
     zone_ends: tuple[float, ...] = ()
     """Roll distances [mm] at which tip-edge zones begin; empty where no tip edge bears."""
     coarse: tuple[FlankFatigue, FlankFatigue] | None = None
-    """The same on elements of twice the size; None without a coarse companion."""
+    """Fatigue of both flanks on elements of twice the size; None without a coarse companion."""
 
     def at_zone_end(self, roll_distance: float) -> bool:
         """Whether a place lies beside a tip-edge zone."""
@@ -65,7 +66,7 @@ def changes(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place:
 
 
 def _at(own: FlankFatigue, criterion: Criterion, place: str) -> Floats:
-    """(n,) largest value below each point at a place; 0 for a stress below `NEGLIGIBLE`, as tension without friction:
+    """Largest value (n,) below each point at a place; 0 for a stress below `NEGLIGIBLE`, as tension without friction:
     what is left of it is the round-off of larger stresses."""
     values = own.values[criterion][:, own.at(place)].max(axis=1, initial=0.0)
     return np.where(values > NEGLIGIBLE * own.loads.peak, values, 0.0) if criterion.unit else values

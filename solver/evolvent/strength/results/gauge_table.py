@@ -26,7 +26,7 @@ class GaugeRow:
     gear: str
     """pinion or wheel."""
     side: str
-    """loaded or back."""
+    """Flank above the gauge: loaded or back."""
     friction: float
     """Friction coefficient."""
     tooth_rotation_deg: float
@@ -35,7 +35,7 @@ class GaugeRow:
     strain_um_per_m: float
     """Mean strain along the profile over the length of the gauge."""
     strain_um_per_m_error: float
-    """Its estimated error by the mesh; NaN without a coarse companion."""
+    """Estimated error of the strain by the mesh; NaN without a coarse companion."""
 
 
 GAUGES = Table("gauges.csv", GaugeRow)
@@ -44,7 +44,8 @@ GAUGES = Table("gauges.csv", GaugeRow)
 def gauge_rows(
     gauges: Sequence[Gauge], found: Sequence[FrictionRoots], materials: tuple[Material, Material]
 ) -> Iterator[GaugeRow]:
-    """Of all gauges at all friction coefficients. Raises InputError where a gauge does not lie on a root."""
+    """Rows of gauges.csv of all gauges at all friction coefficients. Raises InputError where a gauge does not lie on a
+    root."""
     for number, gauge in enumerate(gauges, 1):
         material, side = materials[gauge.member], "loaded" if gauge.loaded_side else "back"
         for each in found:

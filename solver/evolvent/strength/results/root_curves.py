@@ -33,15 +33,15 @@ class CurveErrors:
     """Error bars of a curve; NaN where there is no coarse companion."""
 
     values: Floats
-    """(k,) of its values, by the mesh [MPa]."""
+    """Error bars (k,) of the values of a curve, by the mesh [MPa]."""
     peak: float
-    """Of the largest value of its amount, by the mesh and the spacing of positions [MPa]."""
+    """Error bar of the largest amount of a curve, by the mesh and the spacing of positions [MPa]."""
 
 
 def curve_errors(
     curve: Callable[[GearRoots], Curve], own: GearRoots, coarse: GearRoots | None, order: int
 ) -> CurveErrors:
-    """Of one of the curves above. coarse: the same on elements of twice the size. order: of the cells."""
+    """Error bars of a curve of root stress. coarse: roots on elements of twice the size. order: of the cells."""
     fine = curve(own)
     if coarse is None:
         return CurveErrors(np.full(len(fine.values), np.nan), np.nan)
@@ -61,6 +61,6 @@ def value_errors(fine: Curve, rough: Curve, order: int) -> Floats:
 
 
 def _spacing_error(curve: Curve) -> float:
-    """By how much the curve may be higher between its positions than at the highest of them."""
+    """Amount by which the curve may be higher between its positions than at the highest of them."""
     largest = float(curve.values.max())
     return max([0.0, *(each.height - largest for each in beside_largest(curve.angle, curve.values))])

@@ -54,7 +54,7 @@ def root_stress_figure(title: str, curves: Sequence[RootStressRow], rows: Sequen
 
 
 def _formulas(axes: Axes, rows: Sequence[StrengthRow]) -> None:
-    """Formulas that know the rotation of their load as marks, others as lines."""
+    """Draws formulas that know the rotation of their load as marks, others as lines."""
     for row in rows:
         word = row.method.split()[0].split("'")[0]
         if np.isnan(row.tooth_rotation_deg):
@@ -66,7 +66,7 @@ def _formulas(axes: Axes, rows: Sequence[StrengthRow]) -> None:
 
 
 def _named(axes: Sequence[Axes]) -> tuple[list[object], list[str]]:
-    """Each name once."""
+    """Handles and labels of the legend, each label once."""
     both = [pair for own in axes for pair in zip(*own.get_legend_handles_labels())]
     known = {label: handle for handle, label in both}
     names = sorted(known, key=lambda name: not name.startswith("finite"))

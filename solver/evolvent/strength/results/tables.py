@@ -32,18 +32,18 @@ class FrictionRoots:
     """Roots of both gears at one friction coefficient."""
 
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     gears: tuple[GearRoots, GearRoots]
-    """Pinion and wheel."""
+    """Root stress of pinion and wheel."""
     coarse: tuple[GearRoots, GearRoots] | None
-    """The same on elements of twice the size; None where they are not known."""
+    """Root stress on elements of twice the size; None where it is not known."""
     order: int
-    """Of the cells."""
+    """Polynomial order of the cells."""
 
 
 @dataclass(frozen=True)
 class StrengthRow:
-    """A line of strength.csv: a stress of a gear's root, found in one way. Without load factors."""
+    """A line of strength.csv: a stress of a gear's root by one method. Without load factors."""
 
     gear: str
     """pinion or wheel."""
@@ -54,18 +54,19 @@ class StrengthRow:
     stress_MPa: float
     """Nominal stress of the formula; largest principal stress of the loaded side, or smallest of the back side."""
     stress_MPa_error: float
-    """Its estimated error by the mesh and the spacing of positions; NaN for formulas, and without a coarse companion
-    (`output.error_bars`)."""
+    """Estimated error of the stress by the mesh and the spacing of positions; NaN for formulas, and without a coarse
+    companion (`output.error_bars`)."""
     tooth_rotation_deg: float
     """Pinion rotation of the tooth at which the stress occurs; 0 where its flanks touch at the pitch point of the
     mid-face section, above 0 later in the engagement. NaN for the standard's virtual gear of helical ones."""
     radius_mm: float
-    """Of the place; of formulas that of the critical section, as far above the reference circle of the gear as it lies
-    above that of its virtual gear."""
+    """Radius of the place; of formulas that of the critical section, as far above the reference circle of the gear as
+    it lies above that of its virtual gear."""
     height_mm: float
     """Axial position of the place, 0 at mid-face."""
     tangent_angle_deg: float
-    """Of the profile there to the tooth's centre line in the transverse section; of formulas 30, in the normal one."""
+    """Angle of the profile at the place to the tooth's centre line in the transverse section; of formulas 30, in the
+    normal one."""
     load_share: float
     """Part of the load on the tooth: that a formula takes; of finite elements that of the normal force at this
     rotation. Deflected teeth share the load where rigid ones do not, at the outer point of single contact above all."""
@@ -74,18 +75,19 @@ class StrengthRow:
     stress_MPa / load_share; of finite elements under the forces on this tooth alone, over load_share. The forces on its
     neighbours, which stress_MPa has too, may pull the root a little."""
     form_factor: float
-    """Y_F, in the edition of 2019 with f_ε; NaN for finite elements."""
+    """Form factor Y_F, in the edition of 2019 with f_ε; NaN for finite elements."""
     stress_correction_factor: float
-    """Y_S; NaN for finite elements."""
+    """Stress correction factor Y_S; NaN for finite elements."""
     notch_parameter: float
-    """q_s, for which Y_S was fitted from 1 to below 8; NaN for finite elements."""
+    """Notch parameter q_s, for which Y_S was fitted from 1 to below 8; NaN for finite elements."""
     other_factors: float
     """Y_β Y_DT Y_B of the standard, 1 of other formulas; NaN for finite elements. The stress of a formula is
     load_share · form_factor · stress_correction_factor · other_factors · F_t/(b m_n), b the common face width."""
     mean_MPa: float
-    """Mean of largest and smallest stress there over a passage, in the direction of this one; NaN for formulas."""
+    """Mean of largest and smallest stress at the place over a passage, in the direction of this one; NaN for
+    formulas."""
     amplitude_MPa: float
-    """Half of their difference, likewise."""
+    """Half of the difference of largest and smallest stress at the place over a passage; NaN for formulas."""
 
 
 @dataclass(frozen=True)
@@ -102,11 +104,11 @@ class RootStressRow:
     tension_MPa: float
     """Largest principal stress at the root of the loaded side."""
     tension_MPa_error: float
-    """Its estimated error by the mesh; NaN without a coarse companion."""
+    """Estimated error of the tension by the mesh; NaN without a coarse companion."""
     compression_MPa: float
     """Smallest principal stress at the root of the back side."""
     compression_MPa_error: float
-    """Its estimated error by the mesh; NaN without a coarse companion."""
+    """Estimated error of the compression by the mesh; NaN without a coarse companion."""
 
 
 STRENGTH, ROOT_STRESS = Table("strength.csv", StrengthRow), Table("root_stress.csv", RootStressRow)
@@ -115,7 +117,8 @@ STRENGTH, ROOT_STRESS = Table("strength.csv", StrengthRow), Table("root_stress.c
 def strength_rows(
     load: RootLoad, found: Sequence[FrictionRoots], editions: Sequence[Edition], tolerance_class: int
 ) -> Iterator[StrengthRow]:
-    """Of one gear, formulas first. editions: of the standard. tolerance_class: by ISO 1328-1, for Y_DT."""
+    """Rows of strength.csv of one gear, formulas first. editions: of the standard. tolerance_class: by ISO 1328-1, for
+    Y_DT."""
     yield from formula_rows(load, editions, tolerance_class)
     for each in found:
         own, coarse = each.gears[load.member], None if each.coarse is None else each.coarse[load.member]
@@ -131,8 +134,8 @@ def strength_rows(
 
 
 def formula_rows(load: RootLoad, editions: Sequence[Edition], tolerance_class: int) -> Iterator[StrengthRow]:
-    """By the standard, in each edition; of spur gears also at the points where pairs begin or end to share the load,
-    and largest over the path of contact."""
+    """Rows by the standard, in each edition; of spur gears also at the points where pairs begin or end to share the
+    load, and largest over the path of contact."""
     for edition in editions:
         found = standard_stress(load, edition, tolerance_class)
         point = PointStress("", load.contact_ratio - 1.0, 1.0, found.stress, found.form)
@@ -189,7 +192,7 @@ def formula_warnings(loads: Sequence[RootLoad]) -> Iterator[str]:
 
 
 def root_stress_rows(found: Sequence[FrictionRoots]) -> Iterator[RootStressRow]:
-    """Of both gears at all coefficients."""
+    """Rows of root_stress.csv of both gears at all friction coefficients."""
     for each in found:
         for member, own in zip(Member, each.gears):
             coarse, angles = None if each.coarse is None else each.coarse[member], own.loaded_side.angles

@@ -10,7 +10,7 @@ class ContactPoint:
     """A point of load."""
 
     name: str
-    """As Zhang et al. 2023 have it (Fig. 6), and in words."""
+    """Name as in Zhang et al. 2023 (Fig. 6), and in words."""
     below_tip: float
     """Distance from the gear's tip along the line of action, in base pitches."""
     pairs: int
@@ -18,7 +18,7 @@ class ContactPoint:
 
 
 def contact_points(contact_ratio: float) -> tuple[ContactPoint, ...]:
-    """From the tip down.
+    """Points at which pairs begin or end to share the load, from the tip down.
 
     contact_ratio: ε_αn, from 1 to 3. Below 2 the outer and the inner point of single contact lie between the ends; from
     2 on the boundary points b, c, d, e of double contact.

@@ -15,7 +15,7 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.gear import GearParameters
 
 TANGENT = math.pi / 3.0
-"""Of an external gear: the angle between the tooth's axis and the normal of the 30° tangent [rad]."""
+"""Angle between the tooth's axis and the normal of the 30° tangent of an external gear [rad]."""
 STEEPEST = 1.5
 """Largest auxiliary angle that is sought [rad]."""
 
@@ -25,11 +25,11 @@ class Rack:
     """The rack that generates a root, in its normal section."""
 
     dedendum: float
-    """h_fP: depth of the cut below the rack's reference line [mm]."""
+    """Dedendum h_fP: depth of the cut below the rack's reference line [mm]."""
     tip_radius: float
-    """ρ_fP [mm]."""
+    """Tip radius ρ_fP [mm]."""
     undercut: float = 0.0
-    """s_pr: what protuberance leaves beneath the flank, less the machining allowance [mm]."""
+    """Undercut s_pr that protuberance leaves beneath the flank, less the machining allowance [mm]."""
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class CriticalSection:
     """The section at the 30° tangents; it does not depend on where the load acts."""
 
     gear: VirtualGear
-    """Whose root it is."""
+    """Virtual gear of the root."""
     chord: float
-    """s_Fn, thickness of the tooth there [mm]."""
+    """Thickness s_Fn of the tooth in the section [mm]."""
     radius: float
-    """ρ_F, radius of curvature of the fillet there [mm]."""
+    """Radius of curvature ρ_F of the fillet at the section [mm]."""
     height: float
     """Distance of the chord from the gear's axis [mm]."""
 
@@ -54,7 +54,7 @@ def rack_of(gear: GearParameters) -> Rack:
 
 
 def critical_section(gear: VirtualGear, rack: Rack) -> CriticalSection:
-    """Where the 30° tangents touch the fillet. Raises InputError where the rack's tip is no fillet for them."""
+    """Section at which 30° tangents touch the fillet. Raises InputError where the rack's tip is no fillet for them."""
     z, m, α = gear.teeth, gear.module, gear.pressure_angle
     E = (
         math.pi / 4.0 * m - rack.dedendum * math.tan(α) + rack.undercut / math.cos(α)
@@ -76,12 +76,12 @@ def critical_section(gear: VirtualGear, rack: Rack) -> CriticalSection:
 
 
 def root_section(gear: GearParameters) -> CriticalSection:
-    """Of a gear as its basic rack cuts it."""
+    """Critical section of a gear as its basic rack cuts it."""
     return critical_section(virtual_gear(gear), rack_of(gear))
 
 
 def _auxiliary_angle(G: float, H: float, z: float) -> float:
-    """θ [rad] with θ = 2G/z tan θ − H. Raises InputError where there is none."""
+    """Auxiliary angle θ [rad] with θ = 2G/z tan θ − H. Raises InputError where there is none."""
 
     def rest(θ: float) -> float:
         return θ - 2.0 * G / z * math.tan(θ) + H

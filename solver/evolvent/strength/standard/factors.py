@@ -9,7 +9,7 @@ from evolvent_meshes.errors import InputError
 
 Edition = Literal[2006, 2019]
 STEEPEST_HELIX = math.radians(30.0)
-"""Up to which the helix angle counts."""
+"""Largest helix angle that counts in Y_β [rad]."""
 ONE_CONTACT, DEEP = 2.05, 2.5
 """Contact ratios ε_αn between which Y_DT falls."""
 DEEP_TOOTH = -0.666, 2.366, 0.7

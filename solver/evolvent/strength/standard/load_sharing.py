@@ -11,7 +11,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import InputError
 
 ROUNDING = 1e-12
-"""Of a base pitch."""
+"""Tolerance of places on the path of contact, over the base pitch."""
 
 
 def pairs_in_contact(phase: float, contact_ratio: float) -> Floats:

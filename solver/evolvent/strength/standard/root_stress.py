@@ -30,74 +30,74 @@ FINE, ROUNDS = 400, 3
 
 @dataclass(frozen=True)
 class StandardStress:
-    """σ_F0 and what it is made of."""
+    """Nominal tooth root stress σ_F0 and its factors."""
 
     stress: float
-    """[MPa]."""
+    """Nominal tooth root stress σ_F0 [MPa]."""
     form_factor: float
-    """Y_F, in 2019 with f_ε."""
+    """Form factor Y_F, in 2019 with f_ε."""
     stress_correction_factor: float
-    """Y_S."""
+    """Stress correction factor Y_S."""
     helix_angle_factor: float
-    """Y_β."""
+    """Helix angle factor Y_β."""
     deep_tooth_factor: float
-    """Y_DT; 1 in 2019."""
+    """Deep tooth factor Y_DT; 1 in 2019."""
     rim_thickness_factor: float
-    """Y_B; 1 of a gear without a rim."""
+    """Rim thickness factor Y_B; 1 of a gear without a rim."""
     form: ToothForm
-    """The tooth and its load."""
+    """Tooth form and point of load."""
 
 
 @dataclass(frozen=True)
 class PointStress:
-    """The stress with the load at one point of the flank."""
+    """Tooth root stress with the load at one point of the flank."""
 
     name: str
-    """Of the point."""
+    """Name of the point of load."""
     below_tip: float
-    """Its distance from the tip along the line of action, in base pitches."""
+    """Distance of the point from the tip along the line of action, in base pitches."""
     share: float
     """Part of the load that the tooth bears."""
     stress: float
-    """[MPa]."""
+    """Nominal tooth root stress [MPa]."""
     form: ToothForm
-    """The tooth and its load."""
+    """Tooth form and point of load."""
 
 
 @dataclass(frozen=True)
 class RootLoad:
-    """What loads the root of one gear of a pair."""
+    """Load on the tooth root of one gear of a pair."""
 
     pair: GearPair
-    """The gears."""
+    """Gear pair."""
     member: Member
-    """Whose root it is."""
+    """Gear of the root."""
     pinion_torque: float
-    """[N·mm]."""
+    """Torque of the pinion [N·mm]."""
 
     @property
     def section(self) -> CriticalSection:
-        """The critical section."""
+        """Critical section of the root."""
         return root_section(self.pair.gears[self.member])
 
     @property
     def contact_ratio(self) -> float:
-        """ε_αn."""
+        """Contact ratio ε_αn of the virtual gears."""
         return virtual_contact_ratio(self.pair)
 
     @property
     def tangential_force(self) -> float:
-        """F_t = 2 T_1/d_1 at the reference circle [N]."""
+        """Tangential force F_t = 2 T_1/d_1 at the reference circle [N]."""
         return 2.0 * self.pinion_torque / self.pair.pinion.reference_diameter
 
     @property
     def face_stress(self) -> float:
-        """F_t/(b m_n) [MPa]; b is the common face width."""
+        """Stress F_t/(b m_n) [MPa]; b is the common face width."""
         return self.tangential_force / (self.pair.face_width * self.pair.pinion.normal_module)
 
     @property
     def outer_point(self) -> ContactPoint:
-        """Of the points with the fewest pairs in contact the one next to the tip: the outer point of single contact, or
+        """Point next to the tip among those with the fewest pairs in contact: the outer point of single contact, or
         b."""
         points = contact_points(self.contact_ratio)
         return min(points, key=lambda point: (point.pairs, point.below_tip))
@@ -122,7 +122,8 @@ class RootLoad:
         return ξ / self.pair.pinion.base_radius
 
     def form_at(self, below_tip: float) -> ToothForm:
-        """Loaded at a point. below_tip: distance from the tip along the line of action, in base pitches."""
+        """Tooth form with the load at a point. below_tip: distance from the tip along the line of action, in base
+        pitches."""
         section = self.section
         return ToothForm(section, load_point(section.gear, below_tip * section.gear.base_pitch))
 
@@ -144,8 +145,8 @@ def standard_stress(load: RootLoad, edition: Edition, tolerance_class: int = 6) 
 
 
 def boundary_stresses(load: RootLoad) -> tuple[PointStress, ...]:
-    """Equal sharing at the points where pairs of a spur gear pair begin or end to share the load (Zhang et al. 2023,
-    Eq. 6), from the tip down. Raises InputError for helical gears."""
+    """Root stress with equal sharing at the points where pairs of a spur gear pair begin or end to share the load
+    (Zhang et al. 2023, Eq. 6), from the tip down. Raises InputError for helical gears."""
     _require_spur(load)
     return tuple(
         _at(load, point.name, point.below_tip, 1.0 / point.pairs) for point in contact_points(load.contact_ratio)
@@ -153,7 +154,8 @@ def boundary_stresses(load: RootLoad) -> tuple[PointStress, ...]:
 
 
 def largest_stress(load: RootLoad) -> PointStress:
-    """Over the whole path of contact of a spur pair, with Pedrero's sharing. Raises InputError for helical gears."""
+    """Largest root stress over the whole path of contact of a spur pair, with Pedrero's sharing. Raises InputError for
+    helical gears."""
     _require_spur(load)
     low, high = 0.0, load.contact_ratio
     for _ in range(ROUNDS):

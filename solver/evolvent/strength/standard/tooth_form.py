@@ -10,19 +10,19 @@ from evolvent.strength.standard.virtual_gear import VirtualGear
 from evolvent_meshes.errors import InputError
 
 NOTCH = 1.0, 8.0
-"""Of the notch parameter q_s: the range for which Y_S was fitted."""
+"""Range of the notch parameter q_s for which Y_S was fitted."""
 
 
 @dataclass(frozen=True)
 class LoadPoint:
-    """Where the normal force acts on a virtual gear."""
+    """Point at which the normal force acts on a virtual gear."""
 
     diameter: float
-    """d_e [mm]."""
+    """Diameter d_e of the point [mm]."""
     load_angle: float
-    """α_Fe, between the force and the normal of the tooth's axis [rad]."""
+    """Load angle α_Fe between the force and the normal of the tooth's axis [rad]."""
     half_angle: float
-    """γ_e, half the angle that the tooth covers there [rad]."""
+    """Half angle γ_e that the tooth covers at the point [rad]."""
 
     @property
     def height(self) -> float:
@@ -50,24 +50,24 @@ class ToothForm:
     """The tooth as a beam from the critical section to the point of load."""
 
     section: CriticalSection
-    """Where it breaks."""
+    """Critical section of the root."""
     point: LoadPoint
-    """Where it is loaded."""
+    """Point of load."""
 
     @property
     def arm(self) -> float:
-        """h_Fe, bending moment arm [mm]."""
+        """Bending moment arm h_Fe [mm]."""
         return self.point.height - self.section.height
 
     @property
     def form_factor(self) -> float:
-        """Y_F = 6 (h_Fe/m_n) cos α_Fe / ((s_Fn/m_n)² cos α_n)."""
+        """Form factor Y_F = 6 (h_Fe/m_n) cos α_Fe / ((s_Fn/m_n)² cos α_n)."""
         m, α = self.section.gear.module, self.section.gear.pressure_angle
         return 6.0 * self.arm / m * math.cos(self.point.load_angle) / ((self.section.chord / m) ** 2 * math.cos(α))
 
     @property
     def notch_parameter(self) -> float:
-        """q_s = s_Fn/(2 ρ_F)."""
+        """Notch parameter q_s = s_Fn/(2 ρ_F)."""
         return self.section.chord / (2.0 * self.section.radius)
 
     @property
@@ -77,6 +77,6 @@ class ToothForm:
 
     @property
     def stress_correction_factor(self) -> float:
-        """Y_S = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)), L = s_Fn/h_Fe."""
+        """Stress correction factor Y_S = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)), L = s_Fn/h_Fe."""
         L = self.section.chord / self.arm
         return float((1.2 + 0.13 * L) * self.notch_parameter ** (1.0 / (1.21 + 2.3 / L)))

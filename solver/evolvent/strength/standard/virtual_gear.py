@@ -18,29 +18,29 @@ class VirtualGear:
     """A spur gear, whose number of teeth need not be whole."""
 
     teeth: float
-    """z_n."""
+    """Number of teeth z_n."""
     module: float
-    """m_n [mm]."""
+    """Normal module m_n [mm]."""
     pressure_angle: float
-    """α_n [rad]."""
+    """Normal pressure angle α_n [rad]."""
     profile_shift: float
-    """Coefficient x_E, of the tooth with its thickness allowance."""
+    """Profile shift coefficient x_E of the tooth with its thickness allowance."""
     tip_diameter: float
-    """d_an [mm]."""
+    """Tip diameter d_an [mm]."""
 
     @property
     def reference_diameter(self) -> float:
-        """d_n = m_n z_n [mm]."""
+        """Reference diameter d_n = m_n z_n [mm]."""
         return self.module * self.teeth
 
     @property
     def base_diameter(self) -> float:
-        """d_bn = d_n cos α_n [mm]."""
+        """Base diameter d_bn = d_n cos α_n [mm]."""
         return self.reference_diameter * math.cos(self.pressure_angle)
 
     @property
     def base_pitch(self) -> float:
-        """p_bn = π m_n cos α_n [mm]."""
+        """Base pitch p_bn = π m_n cos α_n [mm]."""
         return math.pi * self.module * math.cos(self.pressure_angle)
 
     @property
@@ -49,7 +49,7 @@ class VirtualGear:
         return 0.5 * math.sqrt(self.tip_diameter**2 - self.base_diameter**2)
 
     def half_angle(self, pressure_angle: float) -> float:
-        """γ [rad], half the angle that the tooth covers where the involute has this pressure angle [rad]."""
+        """Half angle γ [rad] that the tooth covers where the involute has this pressure angle [rad]."""
         shift = 2.0 * self.profile_shift * math.tan(self.pressure_angle)
         return (
             (0.5 * math.pi + shift) / self.teeth
@@ -58,11 +58,11 @@ class VirtualGear:
 
 
 def virtual_gear(gear: GearParameters) -> VirtualGear:
-    """z_n teeth, d_an = d_n + d_Fa − d: loads act up to the tip form circle."""
+    """Virtual gear of z_n teeth, d_an = d_n + d_Fa − d: loads act up to the tip form circle."""
     tip = gear.virtual_teeth * gear.normal_module + gear.tip_form_diameter - gear.reference_diameter
     return VirtualGear(gear.virtual_teeth, gear.normal_module, gear.normal_pressure_angle, gear.generating_shift, tip)
 
 
 def virtual_contact_ratio(pair: GearPair) -> float:
-    """ε_αn = ε_α/cos² β_b."""
+    """Contact ratio ε_αn = ε_α/cos² β_b of the virtual gears."""
     return pair.transverse_contact_ratio / math.cos(pair.pinion.base_helix_angle) ** 2

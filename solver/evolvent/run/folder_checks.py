@@ -25,6 +25,11 @@ WRITTEN = (
     "results/cost.json",
 )
 """Files that a run writes for every scene. Fields and pictures are checked one by one when they are written."""
+OTHERS = (
+    "strength.csv", "fatigue.csv", "excitation.json", "results/excitation.npz", "transient.csv",
+    "results/transient_*.npz", "loads.csv",
+)
+"""Files that tell of another command's results, which a run that begins anew would remove or write over."""
 STUDY = "study.json"
 """File in the folder of a study with the identity of its table."""
 NAMED = 10
@@ -100,11 +105,24 @@ def check_folder(scene: Scene, out: Path, resume: bool, overwrite: bool, source:
     require_no_study(out)
     _keep_sources(scene, folder, source)
     folder.require_free(WRITTEN)
+    if not (resume and any((out / name).exists() for name in COMPUTED[:2])):
+        _require_no_others(out)
     results = [name for name in COMPUTED if (out / name).exists()]
     if results and not (resume or overwrite):
         raise FolderError(
             f"{out}: found the results of a run ({results[0]}); allowed: a folder without; remedy: --resume continues "
             "after them, --overwrite removes them and computes anew, --out names another folder"
+        )
+
+
+def _require_no_others(out: Path) -> None:
+    """Raises FolderError where the folder has the results of another command: `run` keeps a list of its files with
+    theirs, and removes all that it lists when it begins anew."""
+    others = [path.relative_to(out).as_posix() for name in OTHERS for path in sorted(out.glob(name))]
+    if others:
+        raise FolderError(
+            f"{out}: found {others[0]}, of another command; allowed: a folder without, as a run that begins anew "
+            "removes what is there; remedy: --out names another folder"
         )
 
 

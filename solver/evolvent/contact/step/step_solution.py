@@ -59,7 +59,7 @@ class Solution:
         return self.responses[index].field(self.nodal_forces[index], self.motions[index])
 
     def function(self, body: int | Body) -> Any:
-        """The same as a dolfinx.fem.Function: vector Lagrange of the mesh's order [mm].
+        """Displacement of a body as a dolfinx.fem.Function, vector Lagrange of the mesh's order [mm].
 
         It is defined on the caller's mesh, in its numbering, if the body's mesh is from `mesh_from_dolfinx`, otherwise
         on a dolfinx mesh of the body's own, which all solutions of a sweep share. Raises InputError, CompileError,

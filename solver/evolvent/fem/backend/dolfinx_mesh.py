@@ -129,7 +129,7 @@ def _cell_kind(mesh: Mesh) -> tuple[str, int]:
 
 
 def _check_tags(mesh: Mesh, facet_tags: FacetTags) -> None:
-    """Raises InputError for what is no tags of the mesh's facets."""
+    """Raises InputError for anything but tags of the mesh's facets."""
     what, d = f"{WHAT}, facet_tags", mesh.topology.dim - 1
     if not all(hasattr(facet_tags, name) for name in ("dim", "indices", "values")):
         refuse(what, "a dolfinx.mesh.MeshTags", facet_tags, "dolfinx.mesh.meshtags makes one")
@@ -157,8 +157,9 @@ def _facet_groups(mesh: Mesh, plain: MeshData, facet_tags: FacetTags, names: Map
         refuse(what, "a dictionary of names and integer tags", names, 'write {"top": 3}')
     rows = plain.cells[:, facet_nodes(plain.shape, plain.order)]
     rows = rows.reshape(-1, rows.shape[2])
-    row_of = np.empty(mesh.topology.index_map(mesh.topology.dim - 1).size_local, dtype=np.int64)
-    row_of[facet_indices(mesh, input_nodes(mesh)[rows])] = np.arange(len(rows))
+    number = facet_indices(mesh, input_nodes(mesh)[rows])  # each facet inside the body is in two rows
+    row_of = np.empty(number.max() + 1, dtype=np.int64)
+    row_of[number] = np.arange(len(rows))
     groups = {}
     for name, tag in names.items():
         tagged = facet_tags.indices[facet_tags.values == tag]

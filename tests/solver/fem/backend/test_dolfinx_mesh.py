@@ -77,7 +77,7 @@ def exact_energy(order: int, d: int) -> float:
 
 
 def energy_of(function: Any) -> float:
-    """The same of a function, by UFL."""
+    """½ ∫ σ : ε of a function over its mesh, by UFL."""
     λ, μ = STEEL.lame
     ε = ufl.sym(ufl.grad(function))
     return dolfinx_compat.assemble_number((λ / 2 * ufl.tr(ε) ** 2 + μ * ufl.inner(ε, ε)) * ufl.dx(degree=4))

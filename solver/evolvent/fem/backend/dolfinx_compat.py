@@ -62,8 +62,7 @@ def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
 
 
 def gmsh_permutation(shape: str, count: int) -> Ints:
-    """Permutation perm (count,): cells[:, perm] are in the node order of basix where cells of `count` nodes are in that
-    of gmsh."""
+    """Permutation (count,): cells[:, perm] have the node order of basix where cells of `count` nodes have gmsh's."""
     return np.asarray(cpp.io.perm_gmsh(getattr(cpp.mesh.CellType, shape), count), dtype=np.int64)
 
 

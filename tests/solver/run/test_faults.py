@@ -1,6 +1,7 @@
 """`evolvent run` struck by faults: killed at random times again and again, a rank killed, no folder, no room, a NaN.
 
-Disks that are full at each write in turn; see full_disks.py. What is damaged at a chosen moment is in test_archive.py. `make stress` kills 20 times; here it is fewer.
+Disks that are full at each write in turn are made by full_disks.py. What is damaged at a chosen moment is in
+test_archive.py. `make stress` kills 20 times; here it is fewer.
 """
 
 from __future__ import annotations

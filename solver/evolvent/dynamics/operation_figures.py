@@ -20,7 +20,9 @@ class OperationFigures:
     speed_rpm: float
     """Of the pinion."""
     natural_speed_rpm: float
-    """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness."""
+    """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness in motion."""
+    bodies: str
+    """elastic or rigid gear bodies, as in dynamics.json."""
     mean_stiffness_N_per_um: float
     """Mesh stiffness of the whole face under the static torque, mean over the pitch, with what gives way in series: the
     secant one where dynamics.mesh is secant, else the tangent one."""
@@ -58,7 +60,7 @@ class OperationFigures:
         found = response(pair.model, operation.period, operation.state, operation.repeats)
         return OperationFigures(
             speed_rpm=operation.speed, natural_speed_rpm=pair.natural_speed,
-            mean_stiffness_N_per_um=1e-3 * pair.mean_stiffness,
+            bodies=pair.settings.bodies_named, mean_stiffness_N_per_um=1e-3 * pair.mean_stiffness,
             mean_secant_stiffness_N_per_um=1e-3 * float(np.mean(excitation.secant[:, number])),
             unloaded_peak_to_peak_um=UM * float(np.ptp(excitation.unloaded_error)),
             static_peak_to_peak_um=UM * float(np.ptp(excitation.loaded.errors[:, number])),

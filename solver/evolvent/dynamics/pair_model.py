@@ -14,7 +14,7 @@ from evolvent.dynamics.one_degree import OneDegree, one_degree
 from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side, with_chords
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent.dynamics.small_system import GearShapes, pair_system
-from evolvent.gears.problem.gear_inertia import equivalent_mass
+from evolvent.gears.problem.gear_inertia import added_inertia, equivalent_mass
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent_meshes.arrays import Floats
@@ -53,12 +53,28 @@ class DriveSettings:
     ground_damping_ratio: float = 0.0
     """Of the shafts against the ground, likewise."""
     series_stiffness: float = math.inf
-    """Of shafts and bearings along the line of action [N/mm]."""
+    """Of what gives way in line with the mesh, along the line of action, without inertia [N/mm]."""
     mesh: MeshModel = "force_surface"
     """The mesh force."""
     bodies: tuple[GearShapes, GearShapes] | None = None
     """How the bodies of pinion and wheel give way, on their whole width; None: they are rigid, with all inertia at the
     bores."""
+
+    @property
+    def bodies_named(self) -> Literal["elastic", "rigid"]:
+        """As `dynamics.bodies` of a scene."""
+        return "rigid" if self.bodies is None else "elastic"
+
+    @property
+    def added_inertias(self) -> tuple[float, float] | None:
+        """Moments of inertia [t·mm²] beyond those of both bodies, at the bores; 0 where they are equal but for
+        rounding. None for rigid bodies."""
+        if self.bodies is None:
+            return None
+        pinion, wheel = (
+            added_inertia(moment, float(gear.mass[0, 0])) for moment, gear in zip(self.inertias, self.bodies)
+        )
+        return pinion, wheel
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +101,7 @@ class Drive:
 
     @property
     def natural_speed(self) -> float:
-        """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness [r/min]."""
+        """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness in motion [r/min]."""
         return self._speed(self.moving_stiffness / self.model.mass)
 
     def body_speed(self, harmonic: int) -> float:

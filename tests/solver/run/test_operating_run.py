@@ -42,10 +42,11 @@ def computed(run_script: Run, out: Path, *words: str, how: str = "ok", ranks: in
 
 
 def columns(path: Path, *without: str) -> dict[str, Floats]:
-    """The columns of a table."""
+    """The columns of a table, but those of texts."""
     with open(path, encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0] if name not in without}
+    names = [name for name in rows[0] if name not in (*without, "bodies")]
+    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
 
 
 @pytest.fixture(scope="module")

@@ -33,9 +33,9 @@ def operation_figure(
     load, count = figures.static_force_N, round(motion[-1].phase)
     figure = sheet(
         f"Mesh force and transmission error at {figures.speed_rpm:.5g} r/min",
-        f"Natural speed {figures.natural_speed_rpm:.0f} r/min. Largest force {1e-3 * figures.largest_force_N:.3g} kN, "
-        f"{figures.largest_force_N / load:.2f} times the static one; out of contact for "
-        f"{100 * figures.separated_share:.2g} % of the time.",
+        f"Natural speed {figures.natural_speed_rpm:.0f} r/min, {figures.bodies} gear bodies. "
+        f"Largest force {1e-3 * figures.largest_force_N:.3g} kN, {figures.largest_force_N / load:.2f} times the static "
+        f"one; out of contact for {100 * figures.separated_share:.2g} % of the time.",
         (9.6, 6.6),
     )
     force, error = figure.subplots(2, 1, sharex=True)

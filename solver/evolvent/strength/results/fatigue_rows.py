@@ -81,8 +81,9 @@ class FatigueLifeRow:
     """Of the exponent; empty for those of fatigue.exponents."""
     life_ratio: float
     """At one point of the flank, `point_roll_distance_mm` of fatigue.csv, which may lie beside a tip-edge zone
-    (`at_zone_end` of the first coefficient there). NaN where the criterion is negligible at the first coefficient;
-    infinite where it is at this one alone."""
+    (`at_zone_end` of the first coefficient there). NaN where the criterion is negligible at the first coefficient, and
+    of orthogonal shear and tension at the surface, which are multiples of μ p0: such lives would be those of the
+    friction coefficients alone. Infinite where it is negligible at this coefficient alone."""
     life_ratio_at_points: float
     """By the median change at the points of the flank, each compared with itself; quote both."""
 

@@ -15,14 +15,12 @@ UM = 1e3  # µm per mm
 
 @dataclass(frozen=True)
 class OperationFigures:
-    """A pair at its operating speed: operation.json."""
+    """A pair at its operating speed, in numbers."""
 
     speed_rpm: float
     """Of the pinion."""
     natural_speed_rpm: float
     """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness in motion."""
-    bodies: str
-    """elastic or rigid gear bodies, as in dynamics.json."""
     mean_stiffness_N_per_um: float
     """Mesh stiffness of the whole face under the static torque, mean over the pitch, with what gives way in series: the
     secant one where dynamics.mesh is secant, else the tangent one."""
@@ -60,7 +58,7 @@ class OperationFigures:
         found = response(pair.model, operation.period, operation.state, operation.repeats)
         return OperationFigures(
             speed_rpm=operation.speed, natural_speed_rpm=pair.natural_speed,
-            bodies=pair.settings.bodies_named, mean_stiffness_N_per_um=1e-3 * pair.mean_stiffness,
+            mean_stiffness_N_per_um=1e-3 * pair.mean_stiffness,
             mean_secant_stiffness_N_per_um=1e-3 * float(np.mean(excitation.secant[:, number])),
             unloaded_peak_to_peak_um=UM * float(np.ptp(excitation.unloaded_error)),
             static_peak_to_peak_um=UM * float(np.ptp(excitation.loaded.errors[:, number])),
@@ -68,6 +66,21 @@ class OperationFigures:
             largest_force_N=found.largest_force, heaviest_torque_share=operation.heaviest_torque_share,
             smallest_force_N=found.smallest_force, separated_share=found.apart, lifted_share=operation.lifted,
             repeats=operation.repeats,
+        )
+
+
+@dataclass(frozen=True)
+class OperationFacts(OperationFigures):
+    """operation.json: a pair at its operating speed, and its gear bodies."""
+
+    bodies: str
+    """elastic or rigid gear bodies, as in dynamics.json."""
+
+    @staticmethod
+    def of(operation: Operation) -> OperationFacts:
+        """Of a pair's operation."""
+        return OperationFacts(
+            **asdict(OperationFigures.of(operation)), bodies=operation.drive.settings.bodies_named
         )
 
 

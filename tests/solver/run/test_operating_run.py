@@ -42,11 +42,10 @@ def computed(run_script: Run, out: Path, *words: str, how: str = "ok", ranks: in
 
 
 def columns(path: Path, *without: str) -> dict[str, Floats]:
-    """The columns of a table, but those of texts."""
+    """The columns of a table."""
     with open(path, encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    names = [name for name in rows[0] if name not in (*without, "bodies")]
-    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
+    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0] if name not in without}
 
 
 @pytest.fixture(scope="module")

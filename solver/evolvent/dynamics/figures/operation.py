@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.operation_figures import OperationFigures
+from evolvent.dynamics.operation_figures import OperationFacts
 from evolvent.dynamics.results.histories import HistoryRow
 from evolvent.dynamics.results.tables import ExcitationRow
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
@@ -16,7 +16,7 @@ FOOT = "Phase 0: a tooth pair touches at the pitch point."
 
 
 def operation_picture(
-    figures: OperationFigures, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
+    figures: OperationFacts, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
     series_stiffness: float | None,
 ) -> bytes:
     """PNG of `operation_figure`."""
@@ -25,7 +25,7 @@ def operation_picture(
 
 
 def operation_figure(
-    figures: OperationFigures, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
+    figures: OperationFacts, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
     series_stiffness: float | None,
 ) -> Figure:
     """Mesh force and transmission error over the mesh periods after which the motion repeats. series_stiffness: of what

@@ -123,21 +123,17 @@ class DriveSummary:
     """Estimated error of the mean stiffness by the mesh and by the spacing of positions; null where there is no coarse
     companion (`output.error_bars`)."""
     natural_speed_rpm: float
-    """Speed of the pinion at which the mesh frequency is the natural one,
-    √(moving_stiffness_N_per_um / moving_mass_kg) / 2π in consistent units."""
+    """Speed of the pinion at which the mesh frequency is √(moving_stiffness_N_per_um / moving_mass_kg) / 2π [Hz, SI]."""
     natural_speed_rpm_error: float
     """Estimated error of the natural speed by that of the mean stiffness."""
     bodies: str
-    """Model of the gear bodies: elastic, they give way with their inertia where it is; or rigid, with all inertia at
-    the bores."""
+    """Model of the gear bodies: elastic, with their inertia where it is, or rigid, with all inertia at the bores."""
     rigid_natural_speed_rpm: float
-    """Natural speed with all inertia at the bores: too low, the more the smaller these are. It is natural_speed_rpm
-    where bodies are rigid."""
+    """Natural speed with all inertia at the bores: too low, the more the smaller these are."""
     moving_mass_kg: float
     """Mass of the one degree of freedom: m_e; with elastic bodies more, by what their elastic modes lag behind."""
     moving_stiffness_N_per_um: float
-    """Mean stiffness in motion: mean_stiffness_N_per_um; with elastic bodies more, as their own inertia holds them and
-    not their bores."""
+    """Mean stiffness in motion: mean_stiffness_N_per_um; with elastic bodies more, as their inertia holds them."""
     body_frequency_Hz: float | None
     """Lowest frequency of the bodies' own vibration on the mesh, which the one degree of freedom leaves out: where a
     low mesh harmonic comes near to it motion and forces are larger than computed (near_body_vibration of response.csv).
@@ -167,11 +163,9 @@ class DriveSummary:
     """Estimated errors of jumps_up_rpm by the mesh and by the spacing of positions; null where there is no coarse
     companion, and of a jump that is not found on its mesh, or from every other position."""
     jumps_down_rpm: tuple[float, ...]
-    """Speeds at which a pair that runs down leaves the branch: at a fold, or where the steady state loses its stability
-    otherwise; in the order in which it comes there."""
+    """Speeds at which a pair that runs down leaves the branch, like jumps_up_rpm."""
     jumps_down_rpm_error: tuple[float, ...]
-    """Estimated errors of jumps_down_rpm by the mesh and by the spacing of positions; null where there is no coarse
-    companion, and of a jump that is not found on its mesh, or from every other position."""
+    """Estimated errors of jumps_down_rpm, like jumps_up_rpm_error."""
     heaviest_torque_share: float | None
     """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface was
     extrapolated linearly. Null with another model of the mesh."""

@@ -221,6 +221,16 @@ def test_chart_paths_of_scene_and_overrides(folder: Path) -> None:
         load_scene(scene)
 
 
+@pytest.mark.parametrize(("path", "found"), [("/", "/: Is a directory"), ("/dev/null", "/dev/null: a device")])
+def test_chart_path_of_an_override_needs_no_quotes(path: str, found: str) -> None:
+    """A directory or a device for a chart, as the shell hands it over, is named as such, not as a text without quotes;
+    so is the name of a material as an unknown key."""
+    with pytest.raises(ValueError, match=rf"pinion\.flank_csv: found {found}"):
+        scene_from_text(HE, [f"pinion.flank_csv={path}"])
+    with pytest.raises(ValueError, match="there is no list of materials"):
+        scene_from_text(HE, ["pinion.material=18CrNiMo7-6"])
+
+
 EXTREMES = (
     "5e-324", "1e-300", "1e-160", "1e-30", "1e-9", "1e-3", "0.5", "1", "2", "5", "45", "1000", "1e6", "1e9", "1e160",
     "1.7e308", "1000000000000", "0", "-0.0", "-1", "-1e300", "1" + "0" * 400,

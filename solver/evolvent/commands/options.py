@@ -24,6 +24,12 @@ UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
 EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh", "FILE.png": "teeth.png"}
 """Placeholder of the argument of --out in the help -> an example."""
 
+ANEW = "the command has no --resume and begins anew; --overwrite replaces what an earlier call has written"
+WITHOUT_RESUME = {
+    "study": "the same command goes on with the scenes that are missing", "strength": ANEW, "fatigue": ANEW,
+}
+"""Command without --resume -> what it does with earlier results."""
+
 
 def usage_message(error: Any) -> str:
     """Message of a `UsageError` with found, allowed and remedy; the help where the command line is empty."""
@@ -62,7 +68,12 @@ def _option_problem(error: Any, text: str, remedy: str) -> InputProblem:
         parameters = error.ctx.command.params if error.ctx is not None else []
         names = [name for each in parameters for name in each.opts if name.startswith("-")]
         allowed = ", ".join(names) or "the options of the command"
-        return InputProblem(error.option_name, "an unknown option", allowed, _meant(error.option_name, names) or remedy)
+        name = error.ctx.info_name if error.ctx is not None else ""
+        if error.option_name == "--resume":
+            remedy = f"leave it out: {WITHOUT_RESUME.get(name, 'the command has nothing to go on from')}"
+        else:
+            remedy = _meant(error.option_name, names) or remedy
+        return InputProblem(error.option_name, "an unknown option", allowed, remedy)
     if "requires" in text:
         return InputProblem(error.option_name, NOTHING, "a value behind the option", f"give one; {remedy}")
     return InputProblem(error.option_name, "a value", "the option alone", "leave the value out")

@@ -50,7 +50,7 @@ def run_loads(
                 check_folder(each, out / name, resume, overwrite, source)
                 if resume:  # before the first of them is computed
                     solved = scene_to_solve(each, Archive(out / name, each), resume)
-                    resume_point(solved, Archive(out / name, solved), resume)
+                    resume_point(solved, Archive(out / name, solved, "loads"), resume)
 
     on_first(comm, check)
     gears = LoadList([gear_problem(each) for each in scenes.values()])

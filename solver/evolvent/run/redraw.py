@@ -19,6 +19,7 @@ from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.results.figures.all import pictures
 from evolvent.results.figures.loads_picture import LOADS_PICTURE
 from evolvent.results.run_data import RunData, read_run
+from evolvent.run.begun_commands import begun_command
 from evolvent.run.folder_checks import changed_files
 from evolvent.strength.results.pictures import FATIGUE_PICTURE, ROOT_STRESS_PICTURE
 
@@ -48,11 +49,14 @@ def _require_finished(out: Path) -> None:
     """Raises FolderError where there is nothing to draw. os.path, unlike pathlib, takes names that no file can have."""
     if os.path.isdir(out) and ((out / RUN).is_file() or any(picture.is_of(out) for picture in FROM_TABLES)):
         return
-    missing = f"no {RUN} in it, nor all tables of another picture" if os.path.isdir(out) else "no such directory"
-    begun = " --resume" if os.path.exists(out / "results/state.npz") else ""
+    is_folder = os.path.isdir(out)
+    begun = begun_command(out) if is_folder else None
+    missing = f"no {RUN} in it, nor all tables of another picture" if is_folder else "no such directory"
+    found = missing if begun is None else f"{begun.found(out)} of `evolvent {' or '.join(begun.names)}`, but {missing}"
+    remedy = f"run `evolvent run SCENE.toml --out {out}` first" if begun is None else begun.remedy(out)
     raise FolderError(
-        f"{out}: found {missing}; allowed: the --out of a finished run, or of another command that draws; remedy: run "
-        f"`evolvent run SCENE.toml --out {out}{begun}` first"
+        f"{out}: found {found}; allowed: the --out of a finished run, or of another command that draws; "
+        f"remedy: {remedy}"
     )
 
 

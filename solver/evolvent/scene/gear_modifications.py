@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from evolvent.scene.schema.flank import FlankKeys
+from evolvent.scene.schema.errors import InputProblem, shown
+from evolvent.scene.schema.flank import AMOUNT, LEAST, LEAST_MODULES, FlankKeys
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.modifications.modifications import Modifications
+from evolvent_meshes.gears.modifications.modifications import AMOUNTS, SIGNED, Modifications
 
 END_RELIEF_LENGTH = 0.1
 """Default length of an end relief over the face width, at either end."""
@@ -33,3 +34,17 @@ def modifications_of(keys: FlankKeys, gear: GearParameters, active_start: float)
         twist_um=keys.twist_um,
         profile_control_diameter=control,
     )
+
+
+def amount_in_millimetres(gear: str, keys: FlankKeys, module: float) -> InputProblem | None:
+    """The problem with a relief or crowning that is likely to be in mm; None where there is none.
+
+    gear: name of the section. module: normal module [mm].
+    """
+    least = min(LEAST, 1e3 * LEAST_MODULES * module)
+    for name in (each for each in AMOUNTS if each not in SIGNED):
+        value = getattr(keys, name)
+        if 0.0 < value < least:
+            remedy = f"is {value:g} mm meant? Then write {1e3 * value:g}; else give 0"
+            return InputProblem(f"{gear}.{name}", shown(value), AMOUNT, remedy)
+    return None

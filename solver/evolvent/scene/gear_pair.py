@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from scipy.optimize import brentq
 
-from evolvent.scene.gear_modifications import modifications_of
+from evolvent.scene.gear_modifications import amount_in_millimetres, modifications_of
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
@@ -94,6 +94,8 @@ def _modified(unmodified: GearPair, pair: PairSection, sections: dict[str, GearS
     """The pair with the modifications of its flanks. Raises ImpossibleGears."""
     modified: list[GearParameters] = []
     for name, gear, start in zip(sections, unmodified.gears, unmodified.active_start_diameters):
+        if problem := amount_in_millimetres(name, sections[name], pair.normal_module_mm):
+            raise ImpossibleGears(problem)
         try:
             modified.append(replace(gear, modifications=modifications_of(sections[name], gear, start)))
         except GeometryError as error:

@@ -34,6 +34,8 @@ DEEPEST = 8
 """Largest nesting depth of tables and lists; a scene needs three."""
 DEEPEST_KEY = 1000
 """Largest number of dots in a key: tomllib takes hours over a key of half a million parts."""
+TEXT, PATH = r"[A-Za-z][\w -]*|[^\"'\[]+\.csv", r"[^\"'\[{]+"
+"""Regular expressions for texts, and for paths and names of materials, that may stand in an override without quotes."""
 UNDECODABLE = (tomllib.TOMLDecodeError, ValueError, RecursionError)
 """Exceptions of tomllib: ValueError for integers of more than 4300 digits, RecursionError for deep nesting."""
 
@@ -165,7 +167,8 @@ def _parsed(name: str, text: str) -> Any:
         parsed = {}
     if list(parsed) == ["value"]:
         return parsed["value"]
-    if re.fullmatch(r"[A-Za-z][\w -]*|[^\"'\[]+\.csv", text):  # shells take the quotes away: --set mesh.level=quick
+    unquoted = PATH if name.endswith(("_csv", "material")) else TEXT
+    if re.fullmatch(unquoted, text):  # shells take the quotes away: --set mesh.level=quick
         return text
     known = value_written_otherwise(text)
     example = f"""write for example --set '{name}=1.5' or --set '{name}=[0.1, 0.2]', in quotes for the shell"""

@@ -102,6 +102,10 @@ def test_other_commands_validate_too(command: str, scene: Path, capsys: pytest.C
         (["run", "{scene}", "--out", "{scene}"], "allowed: a directory"),
         (["plot", "nowhere"], "nowhere: found no such directory"),
         (["plot", "{folder}"], "no summary.json in it"),
+        (["study", "{scene}", "--out", "o", "--resume"], "leave it out: the same command goes on with the scenes that"),
+        (["strength", "{scene}", "--out", "o", "--resume"], "leave it out: the command has no --resume and begins"),
+        (["fatigue", "{scene}", "--out", "o", "--resume"], "leave it out: the command has no --resume and begins"),
+        (["mesh", "{scene}", "--out", "o", "--resume"], "leave it out: the command has nothing to go on from"),
     ],
 )
 def test_wrong_command_lines_are_status_2(

@@ -68,11 +68,11 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
 
 
 def test_resuming_with_a_heavier_load_is_refused_before_anything_is_computed(tmp_path: Path) -> None:
-    """Its meshes serve other torques, so that no kept result would fit: the error names the key, and no folder is made
-    for the new load."""
+    """Its meshes serve other torques, so that no kept result would fit: the error names the key and the command, and no
+    folder is made for the new load."""
     scene = spur_scene(*SHORT)
     run_loads(load_scenes(scene, [50.0, 100.0]), tmp_path, quiet=True)
-    with pytest.raises(ArchiveError, match="mesh_torques_Nm"):
+    with pytest.raises(ArchiveError, match=r"mesh_torques_Nm(.|\n)*`evolvent loads \.\.\. --overwrite`"):
         run_loads(load_scenes(scene, [50.0, 100.0, 120.0]), tmp_path, resume=True, quiet=True)
     assert not (tmp_path / "load_120.0_percent").exists()
 
@@ -101,5 +101,5 @@ def test_impossible_percentages_are_refused(percents: str, tmp_path: Path, capsy
 
 def test_torque_beyond_those_of_the_meshes_is_refused() -> None:
     """A scene whose meshes serve 1 to 2 N·m only."""
-    with pytest.raises(SceneError, match="mesh_torques_Nm"):
+    with pytest.raises(SceneError, match=r"mesh_torques_Nm(.|\n)*`evolvent loads \.\.\. --overwrite`"):
         spur_scene(*SHORT, "load.mesh_torques_Nm=[1.0,2.0]")

@@ -3,6 +3,7 @@ command (`tests.support.running.redrawn`)."""
 
 from __future__ import annotations
 
+import re
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
@@ -14,9 +15,9 @@ from evolvent.dynamics.figures.all import TRANSIENT_SCENE
 from evolvent.dynamics.results.transient.beginning import TRANSIENT_START, StartRow
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
-from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.run.redraw import FROM_TABLES
+from evolvent.run.redraw import FROM_TABLES, plot_folder
 from tests.support.made_rows import made
 from tests.support.running.transient_tables import transient_tables
 
@@ -51,6 +52,25 @@ def test_start_from_rest_is_drawn_again(out: Path, capsys: pytest.CaptureFixture
     assert main(["plot", str(out)]) == 0
     assert (out / "pictures/transient_start.png").stat().st_size > 10_000
     assert "2 pictures in" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("name", "remedy"), [
+    ("study.json", "`evolvent study STUDY.toml --out {out}` draws its pictures again"),
+    ("load_100.0_percent/scene.toml", "run `evolvent loads SCENE.toml --out {out} --resume` first"),
+    ("fatigue_life.csv", "run `evolvent fatigue SCENE.toml --out {out} --overwrite` first"),
+    ("strength.toml", "run `evolvent strength SCENE.toml --out {out} --overwrite` first"),
+    ("results/transient_static.npz", "run `evolvent transient SCENE.toml --out {out} --resume` first"),
+    ("dynamics.json", "run `evolvent dynamics SCENE.toml --out {out} --resume` first"),
+    ("results/excitation.npz", "run `evolvent excitation SCENE.toml --out {out} --resume` or `evolvent dynamics"),
+    ("results/state.npz", "run `evolvent run SCENE.toml --out {out} --resume` first"),
+    ("notes.txt", "run `evolvent run SCENE.toml --out {out}` first"),
+])
+def test_unfinished_command_is_named(tmp_path: Path, name: str, remedy: str) -> None:
+    """A folder with one file of a command, not with all tables of a picture: the command that goes on in it."""
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("begun", encoding="utf-8")
+    with pytest.raises(FolderError, match=re.escape(remedy.format(out=tmp_path))):
+        plot_folder(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["transient.csv", "transient_teeth.csv", "transient.json"])

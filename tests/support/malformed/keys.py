@@ -104,7 +104,7 @@ UNSUPPORTED: dict[str, str] = {
     "form deviation": "a chart as pinion.flank_csv can have it",
     "end chamfer": "chamfers of the teeth's ends are not supported",
     "speed": "there is no time and no speed outside",
-    "speed of the load": "did you mean dynamics.speed_rpm",
+    "speed of the load": "did you mean dynamics.operating_rpm or transient.speeds_rpm",
     "shaft": "shafts are not modelled",
     "bearings": "bearings and shafts are not modelled",
     "oil": "lubrication is not supported",

@@ -26,6 +26,9 @@ LEAST_SHARE = 0.5
 is far below the nominal one."""
 MOST_RELIEF = 10.0
 """Tip relief, over the deflection of a tooth pair that carries the whole load, from which on a warning is due."""
+LEAST_RELIEF = 0.5
+"""Tip relief, over the largest deflection of the teeth, below which a warning is due. The edge comes clear of the mate
+at about 1; less helps, too."""
 FOLDING = 0.5
 """Modifications, over the depth of the thin layers, above which the mesh may fold. The papers' pairs at a tenth to ten
 times their loads can have 0.5 to 0.95 of it, least near thin tips and on helical gears."""
@@ -100,24 +103,41 @@ def modification_warnings(problem: GearProblem) -> Iterator[str]:
 
 
 def tip_edge_warnings(problem: GearProblem) -> Iterator[str]:
-    """A sentence on gears whose tips nothing relieves: the next tooth meets the deflected ones with its tip's edge."""
-    plain = [member for member in Member if not _has_relieved_tip(problem, member)]
-    if not plain:
-        return
-    estimate, gears = problem.hertz_estimate, "" if len(plain) == len(Member) else f" on the {plain[0].label}"
+    """A sentence on gears whose tips too little relieves: the next tooth meets the deflected ones with its tip's
+    edge."""
+    estimate = problem.hertz_estimate
     force = estimate.normal_force
     stiffness = force / (estimate.tooth_deflection(*problem.materials) * estimate.pair.face_width)
     deflection = 1e3 * bearing(estimate.pair, force, stiffness).deflection
-    yield (
-        f"No tip relief{gears}: tip edges may bear, as teeth deflect by about {deflection:.2g} µm; see tip_relief_um."
-    )
+    reliefs = {member: round(_tip_relief(problem, member), 3) + 0.0 for member in Member}
+    plain = {member: relief for member, relief in reliefs.items() if relief < LEAST_RELIEF * deflection}
+    if not plain:
+        return
+    if any(plain.values()):
+        words = "Too little tip relief, " + " and ".join(f"{um:g} µm on the {each.label}" for each, um in plain.items())
+    else:
+        words = "No tip relief" if len(plain) == len(Member) else f"No tip relief on the {next(iter(plain)).label}"
+    yield f"{words}: tip edges may bear, as teeth deflect by about {deflection:.2g} µm; see tip_relief_um."
 
 
-def _has_relieved_tip(problem: GearProblem, member: Member) -> bool:
-    """Whether something keeps a gear's tip off its mate: on its own flank, or on the mate's where they meet."""
+def _tip_relief(problem: GearProblem, member: Member) -> float:
+    """Material [µm] that keeps a gear's tip off its mate, missing from its own flank and from the mate's where they
+    meet."""
     own, mate = (problem.pair.gears[each].modifications for each in (member, member.mate))
-    relieved = own.tip_relief_um or own.profile_crowning_um or mate.root_relief_um or mate.profile_crowning_um
-    return problem.flanks[member] is not None or bool(relieved)
+    designed = own.tip_relief_um + own.profile_crowning_um + mate.root_relief_um + mate.profile_crowning_um
+    charted = _charted_ends(problem, member)[1] + _charted_ends(problem, member.mate)[0]
+    return designed + 1e3 * charted
+
+
+def _charted_ends(problem: GearProblem, member: Member) -> tuple[float, float]:
+    """Depths [mm] of a gear's chart at the start of the active flank and at the tip, both at mid-face and beyond the
+    depth at mid-height; 0 without a chart."""
+    gear, chart = problem.pair.gears[member], problem.flanks[member]
+    if chart is None:
+        return 0.0, 0.0
+    ends = [gear.roll_length(d) for d in (problem.pair.active_start_diameters[member], gear.tip_form_diameter)]
+    root, middle, tip = chart.at(gear, np.array([ends[0], sum(ends) / 2.0, ends[1]]), np.zeros(3))
+    return float(root - middle), float(tip - middle)
 
 
 def folding_warnings(

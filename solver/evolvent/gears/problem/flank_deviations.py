@@ -129,13 +129,14 @@ class FlankChart:
         return np.maximum(self.diameters**2 / 4.0 - gear.base_radius**2, 0.0) / (2.0 * gear.base_radius)
 
     def at(self, gear: GearParameters, roll_length: Floats, z: Floats) -> Floats:
-        """Depth (n,) [mm] at roll lengths √(r² − r_b²) and heights (n,) of a gear."""
+        """Depth (n,) [mm] at roll lengths √(r² − r_b²) and heights (n,) of a gear; NaN where one of them is NaN."""
         arcs = self.arcs(gear)
         s = np.clip(roll_length**2 / (2.0 * gear.base_radius), arcs[0], arcs[-1])
         if len(self.heights) == 1:
             return np.interp(s, arcs, self.depth[:, 0])
         t = np.clip(z, self.heights[0], self.heights[-1])
-        return np.asarray(RegularGridInterpolator((arcs, self.heights), self.depth)(np.column_stack([s, t])))
+        chart = RegularGridInterpolator((arcs, self.heights), self.depth, bounds_error=False)  # NaN is in no bounds
+        return np.asarray(chart(np.column_stack([s, t])))
 
     def text(self) -> str:
         """Text of a CSV file that `read` gives back: diameters to 1e-9 mm, depths to 1e-9 µm."""

@@ -32,9 +32,10 @@ STATE = "results/state.npz"
 
 
 class Archive:
-    """The results of a scene in the folder OUT. Only rank 0 writes."""
+    """The results of a scene in the folder OUT. Only rank 0 writes. command: the one that a message names."""
 
-    def __init__(self, folder: Path, scene: Scene) -> None:
+    def __init__(self, folder: Path, scene: Scene, command: str = "run") -> None:
+        self.command = command
         self.out, self.folder, self.files = folder, folder / "results", RunFolder(folder)
         self.scene = scene
         self.store = Store(self.files, fingerprint(scene), self._another, "fingerprint")
@@ -54,7 +55,7 @@ class Archive:
             if not (same and np.array_equal(kept.flank_nodes, mesh.flank_nodes)):
                 raise ArchiveError(
                     f"{self.folder}: wanted results on the meshes of this scene, found them on others, made by another "
-                    "version of Evolvent or gmsh; `evolvent run ... --overwrite` computes them anew"
+                    "version of Evolvent or gmsh; --overwrite computes them anew"
                 )
 
     def read_gears(self) -> tuple[GearShape, GearShape]:
@@ -96,7 +97,7 @@ class Archive:
         return (
             f"{self.folder}: wanted the results of this scene, found those of {self._other_scene()}; resume with the "
             "scene and the settings that it was run with (its scene.toml), name another folder with --out, or compute "
-            "anew with `evolvent run ... --overwrite`"
+            f"anew with `evolvent {self.command} ... --overwrite`"
         )
 
     def _other_scene(self) -> str:

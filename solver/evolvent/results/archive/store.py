@@ -97,6 +97,5 @@ def read_arrays(path: Path) -> Arrays:
     except Exception as error:  # NumPy and zipfile raise whatever the bytes of another file lead them to
         remedy = "move or remove it, then compute" if path.exists() else "compute"
         raise ArchiveError(
-            f"{path}: wanted a results file, found none that can be read ({error}); {remedy} anew with `evolvent run "
-            "... --overwrite`"
+            f"{path}: wanted a results file, found none that can be read ({error}); {remedy} anew with --overwrite"
         ) from error

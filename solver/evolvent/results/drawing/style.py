@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.textpath import TextPath
 from PIL import Image
 
@@ -76,6 +77,7 @@ def styled() -> Iterator[None]:
 def sheet(title: str, subtitle: str, size: tuple[float, float] = (9.6, 5.4)) -> Figure:
     """An empty figure with title and subtitle. subtitle: the main result in a sentence; size: width and height
     [inch]."""
+    title, subtitle = drawable(title), drawable(subtitle)
     figure = Figure(figsize=size, layout="constrained")
     band, left, bottom = 0.62 / size[1], 0.14 / size[0], 0.08 / size[1]
     inside = (0.5 * left, bottom, 1.0 - 1.5 * left, 1.0 - band - bottom)  # labels extend beyond their axes
@@ -94,7 +96,14 @@ def foot(figure: Figure, *sentences: str) -> None:
     """Adds footnotes below a figure, one sentence per line."""
     if sentences:
         left = 0.14 / figure.get_figwidth()
-        figure.supxlabel("\n".join(sentences), fontsize=9.0, x=left, ha="left", color="#444444")
+        figure.supxlabel("\n".join(map(drawable, sentences)), fontsize=9.0, x=left, ha="left", color="#444444")
+
+
+def drawable(text: str) -> str:
+    """The text with a question mark for each character that the font of the pictures has not, such as control
+    characters: matplotlib would warn of it and draw a box."""
+    font = get_font(findfont(FontProperties(family=STYLE["font.family"])))  # type: ignore[arg-type]
+    return "".join(each if font.get_char_index(ord(each)) else "?" for each in text)
 
 
 def friction_colours(frictions: Sequence[float]) -> list[tuple[float, ...]]:

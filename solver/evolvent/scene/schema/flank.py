@@ -16,7 +16,10 @@ LONGEST = 1e6
 LENGTH = "a number above 0 up to 1e6, in mm"
 MOST = 500
 """Largest modification [µm]."""
-AMOUNT = f"a number from 0 to {MOST}, in µm"
+LEAST, LEAST_MODULES = 0.1, 5e-5
+"""Smallest relief or crowning but 0 [µm], and [normal modules] where that is less; a smaller number is likely to be in
+mm."""
+AMOUNT = f"a number from 0 to {MOST}, in µm, but none between 0 and {LEAST:g}, or 5e-5 m_n if that is less"
 SIGNED = f"a number from -{MOST} to {MOST}, in µm"
 DERIVED = "delete the key for the default"
 

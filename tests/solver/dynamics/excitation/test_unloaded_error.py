@@ -58,6 +58,17 @@ def test_error_of_an_even_layer_is_its_depth(helix: float) -> None:
         assert unloaded_error(RigidFlanks(one, charts), angles(one)) == pytest.approx(exact, abs=NANOMETRE)
 
 
+def test_chart_over_the_face_where_the_mate_is_below_the_base_circle() -> None:
+    """A pinion of 21 teeth whose mate's flanks reach below its base circle, where it has no involute: 7 µm at both
+    ends of the face are 7 µm everywhere, 1 nm, and not an error."""
+    rack: dict[str, Any] = {"normal_module": 4.0, "normal_pressure_angle_deg": 20.0, "face_width": 30.0}
+    pinion, wheel = (GearParameters.from_rack(z=z, bore_diameter=35.0, **rack) for z in (21, 43))
+    one = GearPair(pinion, wheel, 128.0)
+    chart = FlankChart(np.array([77.0, 94.0]), np.array([-15.0, 15.0]), np.full((2, 2), 7e-3))
+    found = unloaded_error(RigidFlanks(one, (chart, None)), angles(one, 2))
+    assert found == pytest.approx(7e-3, abs=NANOMETRE)
+
+
 @pytest.mark.parametrize("free", Member)
 @pytest.mark.parametrize("parabolic", [False, True])
 def test_relief_against_profiles_turned_onto_each_other(free: Member, parabolic: bool) -> None:

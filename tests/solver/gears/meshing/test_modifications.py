@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from evolvent.check.check_report import overview
 from evolvent.check.scene_warnings import scene_warnings
 from evolvent.commands.app import Exit, main
 from evolvent.gears.meshing.modifications import POINTS, POSITIONS, bearing
-from evolvent.scene.scene import load_scene
+from evolvent.scene.scene import SceneError, load_scene
 from evolvent_meshes.gears.flank import contact_lines
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.gear_cases import spur_scene
@@ -113,11 +114,49 @@ def test_usual_modifications_are_not_warned_of() -> None:
     (("wheel.root_relief_um=10",), "No tip relief on the wheel: tip edges may bear"),
     (("wheel.profile_crowning_um=10",), ""),
     (("wheel.profile_slope_um=10",), "No tip relief: tip edges may bear"),
+    (("pinion.tip_relief_um=0.5", "wheel.tip_relief_um=10"), "Too little tip relief, 0.5 µm on the pinion: tip edges"),
+    (("pinion.tip_relief_um=0.5",), "Too little tip relief, 0.5 µm on the pinion and 0 µm on the wheel: tip edges may"),
+    (("wheel.profile_crowning_um=0.5",),
+     "Too little tip relief, 0.5 µm on the pinion and 0.5 µm on the wheel: tip edges may bear"),
 ])
 def test_missing_tip_relief_is_warned_of(settings: tuple[str, ...], words: str) -> None:
     """He's pair, whose transmission error in single contact is 8.50 µm (quick): `check` names what is not relieved."""
     text = overview(load_scene("demos/he2022.toml", settings))
-    assert words in text and ("No tip relief" in text) == bool(words)
+    assert words in text and ("tip edges may" in text) == bool(words)
+
+
+@pytest.mark.parametrize(("depths", "words"), [
+    ((4.0, 4.0, 4.0), "No tip relief: tip edges may bear"),
+    ((4.0, 4.0, 14.0), "No tip relief on the wheel: tip edges may bear"),
+    ((14.0, 4.0, 14.0), ""),  # the wheel's tip meets the pinion's root
+    ((4.0, 4.0, 1.0), "Too little tip relief, -3 µm on the pinion and 0 µm on the wheel: tip edges may bear"),
+])
+def test_charted_tip_relief_is_that_beyond_mid_height(
+    tmp_path: Path, depths: tuple[float, float, float], words: str
+) -> None:
+    """A chart of the pinion's flank with these depths [µm] at root, mid-height and tip: a constant one relieves
+    nothing, and one that is lower at mid-height than at the tip adds material there."""
+    pair = spur_scene().gear_pair()
+    ends = np.array([pair.pinion.roll_length(d) for d in (pair.active_start_diameters[0], pair.pinion.tip_diameter)])
+    rolls = np.array([ends[0], ends.mean(), ends[1]])
+    diameters = 2.0 * np.hypot(rolls, pair.pinion.base_radius)
+    lines = [f"{d:.9f},{um:g}" for d, um in zip(diameters, depths)]
+    (tmp_path / "chart.csv").write_text("\n".join(["diameter_mm,depth_um", *lines]))
+    text = said(f"pinion.flank_csv={tmp_path / 'chart.csv'}")
+    assert words in text and ("tip edges may" in text) == bool(words)
+
+
+@pytest.mark.parametrize(("setting", "written"), [
+    ("pinion.tip_relief_um=0.02", "20"), ("wheel.profile_crowning_um=0.005", "5"), ("wheel.root_relief_um=0.015", "15"),
+    ("pinion.end_relief_um=0.03", "30"), ("pinion.lead_crowning_um=0.004", "4"),
+])
+def test_amounts_in_millimetres_are_refused(setting: str, written: str) -> None:
+    """Amounts above 0 and below 0.1 µm, far below what can be ground: the message says what millimetres are in µm."""
+    value = setting.partition("=")[2]
+    with pytest.raises(SceneError, match=f"is {value} mm meant\\? Then write {written}; else give 0"):
+        said(setting)
+    key = setting.partition("=")[0]
+    said(f"{key}=0.1"), said(f"{key}=0")
 
 
 def test_check_warns_of_a_relief_that_may_fold_the_mesh() -> None:

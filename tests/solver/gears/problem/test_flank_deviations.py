@@ -51,6 +51,14 @@ def test_chart_depth_is_linear_in_the_arc() -> None:
     assert made.at(gear, roll, np.zeros(5)) == pytest.approx(1e-5 * np.clip(d, 144.0, 156.0) ** 2, rel=1e-12)
 
 
+def test_chart_has_no_depth_where_there_is_no_involute() -> None:
+    """Points inside the base cylinder have the roll length NaN (`Flank.project`): so is their depth, on charts over the
+    profile alone and over the face; other points keep theirs, 10 µm."""
+    roll, z = np.array([np.nan, PAIR.pinion.roll_length(150.0)]), np.zeros(2)
+    for made in (chart(), chart(over_face=1e-4)):
+        assert made.at(PAIR.pinion, roll, z) == pytest.approx([np.nan, 1e-2], nan_ok=True)
+
+
 def test_missing_material_moves_the_transmission_error(tmp_path: Path) -> None:
     """The pinion's flank charted 10 µm low all over: a parallel involute, so the transmission error is 10 µm larger at
     every position within 0.1 %."""

@@ -16,10 +16,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from evolvent.dynamics.figures.all import TRANSIENT_SCENE
 from evolvent.dynamics.transient.divided_steps import StepsTaken
 from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
@@ -30,7 +32,8 @@ from evolvent.results.archive.position_arrays import archived_result, result_arr
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import Arrays, Store
 from evolvent.run.dynamics.transient.checks import transient_section
-from evolvent.scene.scene import Scene
+from evolvent.scene.differences import differences
+from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.gears.pair import GearPair
 
@@ -72,7 +75,8 @@ class KeptCases:
         names = [f"{speed:.17g}rpm_{i}" for speed in section.speeds_rpm for i in range(len(scene.contact.friction))]
         highest = (max(section.speeds_rpm),) if section.modes_per_harmonic is None else ()
         cases, statics = (
-            Store(RunFolder(out), _fingerprint(scene, section, speeds), another) for speeds in (highest, ())
+            Store(RunFolder(out), _fingerprint(scene, section, speeds), partial(another, scene))
+            for speeds in (highest, ())
         )
         return KeptCases(cases, statics, tuple(names), pair, kind)
 
@@ -124,12 +128,18 @@ class KeptCases:
         return [archived_result(arrays, f"{start}{k}/", self.pair) for k in range(int(arrays[f"{start}positions"]))]
 
 
-def another(path: Path) -> str:
-    """Message on an archived case or on static positions of another scene."""
+def another(scene: Scene, path: Path) -> str:
+    """Message on an archived case or on static positions of another scene than this one, with the keys that differ from
+    the scene of the last call that has ended."""
+    try:
+        differing = differences(load_scene(path.parent.parent / TRANSIENT_SCENE.name), scene)
+    except SceneError:  # no call has ended there
+        differing = ""
+    difference = f": this one has {differing}" if differing else ""
     return (
-        f"{path}: wanted a result of this scene, found that of another one; --resume goes on with the scene and the "
-        "settings that it was called with, to which lower speeds may be added, with transient.modes_per_harmonic "
-        "higher ones, too; --out names another folder, --overwrite computes anew"
+        f"{path}: wanted a result of this scene, found that of another one{difference}; --resume goes on with the "
+        "scene and the settings that it was called with, to which lower speeds may be added, with "
+        "transient.modes_per_harmonic higher ones, too; --out names another folder, --overwrite computes anew"
     )
 
 

@@ -32,7 +32,8 @@ GEAR_TERMS: tuple[Term, ...] = (
          ("pair.centre_distance_mm",), source=ISO),
     Term("inclination deviation_error axis_deviation shaft_deviation mesh_misalignment equivalent_misalignment "
          "f_beta_x "
-         "f_beta_y fbx fby f_betax f_betay axis_misalignment shaft_misalignment parallelism parallelism_error skew "
+         "f_beta_y f_sh fsh fbx fby f_betax f_betay axis_misalignment shaft_misalignment parallelism "
+         "parallelism_error skew "
          "tilt "
          "f_sigma_beta f_sigma_delta lead_mismatch pair.deviation", ("pair.misalignment_um",),
          "over the face width, in the plane of action: multiply an angle in rad there by the face width",
@@ -56,13 +57,14 @@ GEAR_TERMS: tuple[Term, ...] = (
     Term("d_f df root_circle root_circle_diameter dedendum_diameter minor_diameter fusskreisdurchmesser",
          ("gear.root_diameter_mm",), source=ISO),
     Term("r_f rf root_circle_radius dedendum_radius", ("gear.root_diameter_mm",), "twice the radius", ISO),
-    Term("h_ap hap h_a ha addendum addendum_factor h_a_star ha_star basic_rack_addendum",
+    Term("h_ap hap h_a ha addendum addendum_factor h_a_star ha_star h_ap_star hap_star basic_rack_addendum",
          ("gear.addendum_coefficient",), OF_MODULE, "ISO 53"),
-    Term("h_fp hfp h_f hf dedendum dedendum_factor h_f_star hf_star basic_rack_dedendum",
+    Term("h_fp hfp h_f hf dedendum dedendum_factor h_f_star hf_star h_fp_star hfp_star basic_rack_dedendum",
          ("gear.dedendum_coefficient",), OF_MODULE, "ISO 53"),
     Term("clearance tip_clearance bottom_clearance root_clearance clearance_coefficient clearance_factor c_p c_star",
          ("gear.dedendum_coefficient",), "h_fP* = h_aP* + c/m_n: 1.25 has a clearance of 0.25 m_n", "ISO 53"),
-    Term("rho_fp rhofp rho_f fillet_radius root_radius root_fillet_radius fillet tool_tip_radius hob_tip_radius "
+    Term("rho_fp rhofp rho_f rho_fp_star rhofp_star fillet_radius root_radius root_fillet_radius fillet "
+         "tool_tip_radius hob_tip_radius "
          "cutter_tip_radius rack_tip_radius_coefficient root_radius_factor fillet_radius_factor",
          ("gear.rack_tip_radius_mm",), "a coefficient is multiplied by the normal module", "ISO 53"),
     Term("protuberance_height protuberance_amount residual_protuberance s_pr spr pr grinding_allowance "
@@ -77,15 +79,17 @@ GEAR_TERMS: tuple[Term, ...] = (
     Term("web_position web_shift", ("gear.web_offset_mm",)), Term("hub hub_outer_diameter", ("gear.hub_diameter_mm",)),
     Term("hub_radius", ("gear.hub_diameter_mm",), "twice the radius"),
     Term("support_length bearing_width shaft_length hub_length", ("gear.support_width_mm",)),
-    Term("a_sn asn a_sne a_sni thickness_allowance tooth_thickness_tolerance tooth_thickness_deviation tooth_thinning "
+    Term("a_sn asn a_sne a_sni e_sns esns e_sni esni thickness_allowance tooth_thickness_tolerance "
+         "tooth_thickness_deviation tooth_thinning "
          "thinning_for_backlash", ("gear.tooth_thickness_allowance_um",), "negative where teeth are thinner",
          "DIN 3967"),
     Term("chamfer h_k tip_edge_chamfer tip_edge_break", ("gear.tip_chamfer_um",), source=ISO),
     Term("tip_edge_radius tip_round tip_edge_rounding edge_rounding", ("gear.tip_rounding_um",), source=ISO),
     # the loaded flank
-    Term("c_alpha_a c_aa caa ca_a tip_relief_amount tip_relief_depth kopfruecknahme kopfrücknahme",
+    Term("c_alpha_a c_aa caa ca_a ca c_a tip_relief_amount tip_relief_depth kopfruecknahme kopfrücknahme",
          ("gear.tip_relief_um",), source=ISO),
-    Term("tip_relief_length tip_relief_start tip_relief_height start_of_tip_relief tip_relief_diameter d_ca l_ca "
+    Term("tip_relief_length tip_relief_start tip_relief_height start_of_tip_relief tip_relief_diameter d_ca l_ca dca "
+         "lca "
          "tip_relief_roll_angle tip_relief_roll_length tip_relief_start_diameter",
          ("gear.tip_relief_start_diameter_mm",),
          ROLL, ISO),
@@ -93,10 +97,10 @@ GEAR_TERMS: tuple[Term, ...] = (
     Term("c_alpha_f c_af caf root_relief_amount root_relief_depth fussruecknahme fußrücknahme",
          ("gear.root_relief_um",),
          source=ISO),
-    Term("root_relief_length root_relief_start root_relief_end root_relief_height root_relief_diameter d_cf_r l_cf "
+    Term("root_relief_length root_relief_start root_relief_end root_relief_height root_relief_diameter d_cf_r l_cf lcf "
          "root_relief_roll_angle", ("gear.root_relief_end_diameter_mm",), ROLL, ISO),
     Term("root_relief_type root_relief_shape root_relief_curve", ("gear.root_relief_form",), source=TOOLS),
-    Term("c_alpha barrelling barreling profile_barrelling profile_barreling involute_crowning profile_crown "
+    Term("c_alpha calpha barrelling barreling profile_barrelling profile_barreling involute_crowning profile_crown "
          "involute_barrelling", ("gear.profile_crowning_um",), source=ISO),
     Term("c_h_alpha c_halpha cha pressure_angle_modification pressure_angle_correction profile_angle_modification "
          "involute_slope profile_angle_correction", ("gear.profile_slope_um",), source=ISO),
@@ -108,7 +112,8 @@ GEAR_TERMS: tuple[Term, ...] = (
          "lead_angle_modification lead_modification taper", ("gear.helix_slope_um",), source=ISO),
     Term("f_h_beta f_hbeta fhb helix_slope_deviation lead_error", ("gear.helix_slope_um",),
          "C_Hβ = −f_Hβ cos β_b of right-hand gears, f_Hβ cos β_b of left-hand ones", "ISO 1328-1"),
-    Term("c_beta_i c_beta_ii face_end_relief side_relief end_relief_amount endruecknahme endrücknahme",
+    Term("c_beta_i c_beta_ii end_relief_i end_relief_ii face_end_relief side_relief end_relief_amount endruecknahme "
+         "endrücknahme",
          ("gear.end_relief_um",), source=ISO),
     Term("end_relief_width end_relief_start l_ci l_cii", ("gear.end_relief_length_mm",), source=ISO),
     Term("end_relief_type end_relief_shape end_relief_curve", ("gear.end_relief_form",), source=TOOLS),
@@ -138,14 +143,21 @@ GEAR_TERMS: tuple[Term, ...] = (
          ISO),
     Term("lead p_z axial_pitch p_x base_pitch transverse_base_pitch p_bt p_et", (),
          "leads and pitches follow from module, teeth, pressure angle and helix angle", ISO),
-    Term("form_diameter tip_form_diameter d_fa", (), "d_Fa follows from tip_chamfer_um or tip_rounding_um", ISO),
-    Term("root_form_diameter d_ff true_involute_form_diameter tif tif_diameter", (),
+    Term("form_diameter tip_form_diameter d_fa dfa", (), "d_Fa follows from tip_chamfer_um or tip_rounding_um", ISO),
+    Term("root_form_diameter d_ff dff true_involute_form_diameter tif tif_diameter", (),
          "d_Ff follows from the tool: dedendum_coefficient, rack_tip_radius_mm, protuberance_um", ISO),
-    Term("start_of_active_profile sap sap_diameter d_nf end_of_active_profile eap eap_diameter d_na", (),
+    Term("start_of_active_profile sap sap_diameter d_nf dnf end_of_active_profile eap eap_diameter d_na "
+         "dna", (),
          "the active profile follows from the tips and the centre distance; `evolvent check` has it", ISO),
     Term("tip_alteration tip_alteration_coefficient tip_shortening addendum_shortening truncation", (),
          "k follows from centre distance and profile shifts; tip_diameter_mm gives another tip", ISO),
+    Term("j_bn jbn j_bt jbt j_t jt j_wt jwt normal_backlash circumferential_backlash", (),
+         "backlash follows from pair.centre_distance_mm, the profile shifts and tooth_thickness_allowance_um; "
+         "vibration takes it as dynamics.backlash_um", ISO),
+    Term("sum_x sumx x_sum sum_of_profile_shifts profile_shift_sum", (),
+         "the sum of the profile shifts follows from pinion.profile_shift and wheel.profile_shift", ISO),
     # what is not supported
+    Term("ra_um r_a_um rz rz_um r_z r_z_um rq rq_um", (), "roughness is not supported: flanks are smooth", "ISO 4287"),
     Term("axial_offset axial_shift axial_position axial_displacement face_offset face_width_offset z_offset "
          "pair.offset "
          "gear.offset pair.position gear.position", (),

@@ -54,6 +54,8 @@ HABITS: tuple[_Habit, ...] = (
         part.replace("d", "e").replace("D", "e"))),
     _Habit(r"(?<![\w.\[,])[-+]?\d+,\d[\d,.]*\s*$", "a comma in a number",
            lambda _: "a decimal point, not a comma, and nothing between thousands"),
+    _Habit(r"(?<![\w.])\d{1,3}(?:Cr|Mn|Ni)[\w.+-]*", "the name of a material",
+           lambda _: "no list of materials: give E_GPa and nu in [material]"),
     _Habit(rf"(?<![\w.])[-+]?{NUMBER}\s*(?:[^\W\d_]|[°%])[^\s,\]]*", "a number with a unit", lambda part: _write(
         re.match(rf"[-+]?{NUMBER}", part)[0],  # type: ignore[index]
         "no unit after a number")),

@@ -21,8 +21,11 @@ OTHER_TERMS: tuple[Term, ...] = (
          "there is no list of materials: give material.E_GPa and material.nu"),
     Term("yield yield_stress yield_strength yield_point sigma_y rp02 rp0_2", ("fatigue.yield_stress_MPa",),
          "a run itself is linearly elastic", FEM),
+    Term("gear.e", ("material.E_GPa",), "of one gear in [material.pinion] or [material.wheel]"),
+    Term("gear.nu", ("material.nu",), "of one gear in [material.pinion] or [material.wheel]"),
     # load and friction
-    Term("load.t t1 t_1 torque moment drehmoment nominal_torque input_torque pinion_torque", ("load.torque_Nm",),
+    Term("load.t load.t_nom t_nom tnom t1 t_1 torque moment drehmoment nominal_torque input_torque "
+         "pinion_torque", ("load.torque_Nm",),
          "on the gear that load.on names"),
     Term("output_torque wheel_torque gear_torque t2 t_2", ("load.torque_Nm",), 'with load.on = "wheel"'),
     Term("force tangential_force transverse_force f_t ft load.f nominal_force", ("load.torque_Nm",),
@@ -72,6 +75,12 @@ OTHER_TERMS: tuple[Term, ...] = (
          "dynamics.frequency rpm_range", ("dynamics.speed_rpm",), "the lowest and the highest one, of the pinion"),
     Term("transient.rpm transient.speed transient.n transient.n1 transient.omega transient.speed_rpm "
          "transient.operating_rpm", ("transient.speeds_rpm",), "a list, of the pinion"),
+    Term("dynamics.speeds_rpm", ("dynamics.speed_rpm", "dynamics.operating_rpm", "transient.speeds_rpm"),
+         "of the pinion: the range of `evolvent dynamics`, one speed of `evolvent run`, a list for `evolvent "
+         "transient`"),
+    Term("load.speed load.speeds load.rpm load.n load.n1 load.n_1 load.omega",
+         ("dynamics.operating_rpm", "transient.speeds_rpm"),
+         "of the pinion: one speed of `evolvent run`, a list for `evolvent transient`"),
     Term("number_of_speeds n_speeds speed_steps speed_points", ("dynamics.speeds",)),
     Term("dynamics.torques dynamics.loads load_percents torque_levels percents", ("dynamics.torque_percents",)),
     Term("inertia moment_of_inertia dynamics.j dynamics.i polar_moment", (
@@ -89,7 +98,8 @@ OTHER_TERMS: tuple[Term, ...] = (
          "f_pb = f_pt cos α_t, for K_v of ISO 6336-1", "ISO 1328-1"),
     Term("f_f_alpha f_falpha ffa profile_form_deviation profile_error", ("dynamics.profile_deviation_um",),
          "for K_v of ISO 6336-1", "ISO 1328-1"),
-    Term("quality accuracy_grade accuracy_class iso_quality quality_grade iso_grade dynamics.grade strength.grade "
+    Term("quality gear.q pair.q accuracy_grade accuracy_class iso_quality quality_grade iso_grade dynamics.grade "
+         "strength.grade "
          "flank_tolerance_class", ("strength.tolerance_class", "dynamics.tolerance_class"),
          "for the formulas of ISO 6336 alone: flanks are computed without deviations", "ISO 1328-1"),
     Term("sigma_hlim sigma_h_lim shlim contact_endurance contact_stress_limit allowable_contact_stress",

@@ -13,7 +13,7 @@ from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arrays
 from evolvent.run.dynamics.transient import cases as module
-from evolvent.run.dynamics.transient.kept_cases import KeptCases
+from evolvent.run.dynamics.transient.kept_cases import KeptCases, another
 from evolvent.run.dynamics.transient.transient_run import run_transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
@@ -78,6 +78,18 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("transient")
     run_transient(scene(), folder, quiet=True)
     return folder
+
+
+def test_another_scene_is_named_by_its_keys(tmp_path: Path) -> None:
+    """The scene of the call that has ended is there: the torque with both values; without it, or where it cannot be
+    read, there are none."""
+    wanted, path = scene("load.torque_Nm=90"), tmp_path / "results/transient_static.npz"
+    assert "found that of another one; --resume" in another(wanted, path)
+    (tmp_path / "transient.toml").write_text(scene().resolved_toml(), encoding="utf-8")
+    torque = f"{scene().load.torque_Nm:g}"
+    assert f"found that of another one: this one has load.torque_Nm = 90 (kept: {torque});" in another(wanted, path)
+    (tmp_path / "transient.toml").write_text("no scene", encoding="utf-8")
+    assert "found that of another one; --resume" in another(wanted, path)
 
 
 def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

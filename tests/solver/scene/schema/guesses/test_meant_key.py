@@ -106,6 +106,30 @@ REPORTED = {
     "transient.rpm": "did you mean transient.speeds_rpm (",
     "transient.damping": "did you mean transient.mode_damping_ratio (",
     "transient.damping_ratio": "did you mean dynamics.damping_ratio?",
+    "load.speed_rpm": "did you mean dynamics.operating_rpm or transient.speeds_rpm (",
+    "load.n1": "did you mean dynamics.operating_rpm or transient.speeds_rpm (",
+    "load.rpm": "did you mean dynamics.operating_rpm or transient.speeds_rpm (",
+    "dynamics.speeds_rpm": "did you mean dynamics.speed_rpm or dynamics.operating_rpm or transient.speeds_rpm (",
+    "pinion.Ra_um": "delete it: roughness is not supported",
+    "wheel.Rz": "delete it: roughness is not supported",
+    "pinion.Ca": "did you mean pinion.tip_relief_um?",
+    "pinion.Calpha_um": "did you mean pinion.profile_crowning_um?",
+    "pinion.LCa_mm": "did you mean pinion.tip_relief_start_diameter_mm (",
+    "pinion.dCa": "did you mean pinion.tip_relief_start_diameter_mm (",
+    "pinion.end_relief_I_um": "did you mean pinion.end_relief_um?",
+    "pinion.hfP_star": "did you mean pinion.dedendum_coefficient (",
+    "pinion.rho_fP_star": "did you mean pinion.rack_tip_radius_mm (",
+    "wheel.dNf": "delete it: the active profile follows from",
+    "wheel.dNa": "delete it: the active profile follows from",
+    "pair.jbn": "delete it: backlash follows from",
+    "pair.sum_x": "delete it: the sum of the profile shifts follows from",
+    "pair.fsh": "did you mean pair.misalignment_um (",
+    "pinion.E_sns": "did you mean pinion.tooth_thickness_allowance_um (",
+    "pinion.E": "did you mean material.E_GPa (of one gear in [material.pinion]",
+    "pair.Q": "did you mean strength.tolerance_class or dynamics.tolerance_class (",
+    "load.T_nom": "did you mean load.torque_Nm (",
+    "dynamics.pinion_inertia_kgm2": "did you mean dynamics.pinion_inertia_kg_m2?",
+    "pinion.material": "delete it: there is no list of materials: give material.E_GPa and material.nu",
     "teeth": "did you mean pinion.teeth or wheel.teeth?",
     "torque_Nm": "did you mean load.torque_Nm",
 }
@@ -164,5 +188,5 @@ def test_keys_that_are_spelled_alike_are_told_apart() -> None:
     assert "did you mean pinion.face_width_mm?" in problem("pinion.facewidth").remedy
     assert "did you mean fatigue.yield_stress_MPa" in problem("material.yield_stress_MPa").remedy
     assert "did you mean" not in problem("mesh.face_widht_mm").remedy
-    assert "did you mean dynamics.speed_rpm?" in problem("dynamics.speeds_rpm").remedy  # speeds is a number of them
+    assert "did you mean dynamics.speed_rpm or" in problem("dynamics.speeds_rpm").remedy  # speeds is a number of them
     assert "did you mean load?" in problem("laod", {"torque_Nm": 1}).remedy

@@ -20,6 +20,7 @@ WRITTEN = {
     "1.5D2": ("exponent", "write 1.5e2"), "“quick”": ("quotation", 'write "quick"'),
     "quick": ("quotes", 'write "quick"'),
     "True": ("quotes", "write true"), "\u00a05": ("U+00A0", "plain space"), "5 // torque": ("comment", "with #"),
+    "18CrNiMo7-6": ("the name of a material", "no list of materials: give E_GPa and nu in [material]"),
     "25.4/8": ("calculation", "write its result"), "[.5, 1.0]": (".5,", "write 0.5"),
 }
 """Value that is no TOML -> what the message must have of what was found, and of the remedy."""

@@ -123,7 +123,7 @@ class DriveSummary:
     """Estimated error of the mean stiffness by the mesh and by the spacing of positions; null where there is no coarse
     companion (`output.error_bars`)."""
     natural_speed_rpm: float
-    """Speed of the pinion at which the mesh frequency is √(moving_stiffness_N_per_um / moving_mass_kg) / 2π [Hz, SI]."""
+    """Speed of the pinion at which the mesh frequency is √(moving_stiffness_N_per_um / moving_mass_kg) / 2π [Hz]."""
     natural_speed_rpm_error: float
     """Estimated error of the natural speed by that of the mean stiffness."""
     bodies: str

@@ -22,6 +22,8 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.gears.sweep.position_result import PositionResult
 
 LOG = logging.getLogger("evolvent")
+ON_DEFLECTED = "The pitch was solved on deflected flanks: before deflection its energy does not balance."
+"""What a reader is told where deflected flanks were not asked for."""
 T = TypeVar("T")
 Observer = Callable[[SweptPosition], object]
 """Called with each position once that is certified: archives it, or shows progress."""

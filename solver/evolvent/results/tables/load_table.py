@@ -41,7 +41,8 @@ class LoadRow:
     kink_pressure_MPa: float
     """As in summary.json: over the start of a linear relief, for an ideal kink; NaN where there is none."""
     mean_pressure_MPa: float
-    """As in summary.json; it depends less on the mesh than the largest one, so that torques can be compared by it."""
+    """As in summary.json. Where the largest one lies at the end of a tip-edge zone, which moves with the mesh, torques
+    can be compared by this one; its error bar may be the wider one, and says how well."""
     mean_pressure_MPa_error: float
     """Its estimated error."""
     mesh_stiffness_N_per_mm_um: float

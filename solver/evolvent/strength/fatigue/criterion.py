@@ -37,6 +37,9 @@ class Criterion:
     """Largest power with which it grows with the contact pressure."""
     of_history: bool = True
     """Whether it is one of the stress while the contact passes."""
+    of_friction: tuple[str, ...] = ()
+    """Places where it is the friction coefficient times the pressure by definition, so that its change is that of the
+    coefficient, and a life by it would say nothing."""
 
     def slopes_at(self, place: str) -> tuple[tuple[float, str], ...]:
         """m and its source, where there is one that speaks of values at this place."""
@@ -51,11 +54,12 @@ CONTACT_PRESSURE = Criterion(
 ORTHOGONAL_SHEAR = Criterion(
     "orthogonal_shear_range", "range of orthogonal shear stress", exponent=9.19, exponent_place=BELOW,
     source="Lundberg and Palmgren, line contact: c/e with c = 31/3, e = 9/8, at equal depth and stressed volume",
+    of_friction=(SURFACE,),
 )
 MAXIMUM_SHEAR = Criterion("maximum_shear", "maximum shear stress (Tresca)")
 VON_MISES = Criterion("von_mises", "von Mises")
 DANG_VAN = Criterion("dang_van", "Dang Van")
-TENSION = Criterion("tension", "tensile stress along the flank", places=NEAR_SURFACE)
+TENSION = Criterion("tension", "tensile stress along the flank", places=NEAR_SURFACE, of_friction=(SURFACE,))
 FATEMI_SOCIE = Criterion("fatemi_socie", "Fatemi-Socie", unit="", pressure_power=2.0)
 
 

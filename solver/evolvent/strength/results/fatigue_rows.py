@@ -52,6 +52,11 @@ class FatigueRow:
     """Value at this point, and for below largest over the depths."""
     point_depth_um: float
     """Depth of that."""
+    point_at_zone_end: bool
+    """Whether this point lies beside the zone of a tip edge."""
+    point_near_friction_reversal: bool
+    """Whether friction reverses near this point, as above, at this friction coefficient or at the first one: the change
+    rests on both histories."""
     change_percent: float
     """Of the value at this point over that at the first friction coefficient; NaN as above."""
     change_percent_error: float
@@ -81,8 +86,9 @@ class FatigueLifeRow:
     """Of the exponent; empty for those of fatigue.exponents."""
     life_ratio: float
     """At one point of the flank, `point_roll_distance_mm` of fatigue.csv, which may lie beside a tip-edge zone
-    (`at_zone_end` of the first coefficient there). NaN where the criterion is negligible at the first coefficient;
-    infinite where it is at this one alone."""
+    (`point_at_zone_end` there). NaN where the criterion is negligible at the first coefficient, and where it is the
+    friction coefficient times the pressure by definition: range of orthogonal shear and tension at the surface;
+    infinite where it is negligible at this coefficient alone."""
     life_ratio_at_points: float
     """By the median change at the points of the flank, each compared with itself; quote both."""
 

@@ -43,7 +43,7 @@ def flank(peaks: list[float], shear: Rows, tension: Floats) -> FlankFatigue:
     surface = np.zeros((n, 4))
     surface[:, 0] = peaks
     edge = np.zeros((n, 4))
-    edge[:, 0] = tension
+    edge[:, :2] = tension[:, None]
     values = {CONTACT_PRESSURE: surface, ORTHOGONAL_SHEAR: np.array(shear).reshape(n, 4), TENSION: edge}
     return FlankFatigue(loads, DEPTHS, values)
 
@@ -122,7 +122,7 @@ def test_what_is_negligible_at_the_first_coefficient_has_no_change() -> None:
     found = [FrictionFatigue(0.0, (still, still), math.nan), FOUND[1]]
     row = next(row for row in fatigue_rows(PAIR, found) if (row.friction, row.criterion) == (0.15, "tension"))
     assert row.value == 150.0 and np.isnan([row.change_percent, row.change_at_points_percent, row.point_value]).all()
-    lives = [row for row in life_rows(found, [10.0]) if row.criterion == "tension" and row.place == SURFACE]
+    lives = [row for row in life_rows(found, [10.0]) if row.criterion == "tension" and row.place == TENTH]
     assert len(lives) == 2 and np.isnan([(row.life_ratio, row.life_ratio_at_points) for row in lives]).all()
 
 
@@ -131,7 +131,7 @@ def test_lives() -> None:
     long; contact pressure is the same, with its own exponent too; nothing of the first coefficient itself."""
     rows = list(life_rows(FOUND, [4.0]))
     assert {row.friction for row in rows} == {0.15}
-    (tension,) = [row for row in rows if (row.criterion, row.gear, row.place) == ("tension", "pinion", SURFACE)]
+    (tension,) = [row for row in rows if (row.criterion, row.gear, row.place) == ("tension", "pinion", TENTH)]
     assert tension.life_ratio == pytest.approx(0.75**-4)
     assert tension.life_ratio_at_points == pytest.approx(0.8**-4)
     pressure = [row for row in rows if row.criterion == "contact_pressure" and row.gear == "wheel"]
@@ -139,12 +139,41 @@ def test_lives() -> None:
         (13.22, True, 1.0), (4.0, False, 1.0)]
 
 
+def test_what_is_friction_by_definition_has_no_life() -> None:
+    """Shear and tension at the surface are μ and 2μ times the pressure: their change is that of μ, and a life by it
+    would be one by a ratio of two inputs; below they have lives."""
+    known = {
+        (row.criterion, row.place): not np.isnan([row.life_ratio, row.life_ratio_at_points]).any()
+        for row in life_rows(FOUND, [4.0])
+    }
+    assert not known[ORTHOGONAL_SHEAR.name, SURFACE] and not known[TENSION.name, SURFACE]
+    assert known[ORTHOGONAL_SHEAR.name, TENTH] and known[TENSION.name, TENTH] and known["contact_pressure", SURFACE]
+
+
+@pytest.mark.parametrize("frictions", [(0.0, 0.2), (0.2, 0.0), (0.1, 0.2)])
+def test_change_rests_on_the_histories_of_both_coefficients(frictions: tuple[float, float]) -> None:
+    """Problem: shear is largest at the pitch point, where friction reverses unless there is none, which may be at
+    either coefficient. Exact: the change at that point is flagged in each order; the value of the one without friction
+    is not, and contact pressure, which has no history, never."""
+    shear: Rows = [[100, 120, 400, 410], [90, 300, 450, 500], [80, 96, 400, 80]]
+    own = flank([900.0, 1000.0, 800.0], shear, 100.0 * np.ones(3))
+    found = [FrictionFatigue(μ, (own, own), math.nan) for μ in frictions]
+    rows = {
+        (row.friction, row.criterion): row for row in fatigue_rows(PAIR, found)
+        if row.gear == "pinion" and row.place in (BELOW, SURFACE) and row.criterion != TENSION.name
+    }
+    below, pressure = rows[frictions[1], ORTHOGONAL_SHEAR.name], rows[frictions[1], "contact_pressure"]
+    assert (below.point_roll_distance_mm, below.near_friction_reversal) == (0.0, frictions[1] > 0.0)
+    assert below.point_near_friction_reversal
+    assert not pressure.near_friction_reversal and not pressure.point_near_friction_reversal
+
+
 def test_life_without_what_there_was(recwarn: pytest.WarningsRecorder) -> None:
     """Tension that is gone, or next to, at the second coefficient alone: a life without end, and no error."""
     for left in (0.0, 1e-60):
         still = replace(LESS, values={**LESS.values, TENSION: LESS.values[TENSION] * left})
         rows = life_rows([FOUND[0], FrictionFatigue(0.0, (still, still), math.nan)], [10.0])
-        assert [row.life_ratio for row in rows if (row.criterion, row.place) == ("tension", SURFACE)] == [math.inf] * 2
+        assert [row.life_ratio for row in rows if (row.criterion, row.place) == ("tension", TENTH)] == [math.inf] * 2
     assert not len(recwarn)
 
 

@@ -146,7 +146,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "run.strength": (
         "meshes.mesh", "meshes.gears", "fem.parallel", "fem.backend", "gears.problem", "gears.meshing",
         "gears", "gears.pressure", "gears.solution", "scene.schema", "scene", "results.archive",
-        "results", "results.error_bars", "results.drawing", "strength.standard", "strength.fatigue",
+        "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard", "strength.fatigue",
         "strength", "strength.results", "run",
     ),
     "run.dynamics": (

@@ -72,8 +72,7 @@ class Engagement:
     at_zone_end: Bools
     """(n,) bool, whether the largest peak pressure lies at the limit of a tip-edge zone."""
     mean_pressure: Floats
-    """(n,) mean peak pressure along the contact line [MPa], see `line_mean`, over the starts of reliefs too; NaN where
-    no part of the line lies between the tip-edge zones."""
+    """(n,) mean peak pressure along the contact line [MPa], see `line_mean`; NaN as `max_pressure`."""
     contact_length: Floats
     """(n,) length of the contact line [mm]."""
     zone_ends: tuple[EngagementPeak, ...] = field(default=(), kw_only=True)
@@ -101,6 +100,12 @@ class Engagement:
             for k in entries
         ]
         return max([*sampled, *ends], key=lambda peak: peak.pressure, default=UNKNOWN_PEAK)
+
+    @property
+    def whole_mean(self) -> float:
+        """Mean of `mean_pressure` over the rotations at which it is known [MPa]; NaN where it is known at none."""
+        known = self.mean_pressure[np.isfinite(self.mean_pressure)]
+        return float(np.mean(known)) if len(known) else float("nan")
 
     @property
     def pressure_curve(self) -> tuple[Floats, Floats]:

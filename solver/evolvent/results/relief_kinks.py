@@ -23,6 +23,10 @@ from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import hertz_between
 from evolvent.gears.pressure.relief_starts import relief_starts
 from evolvent.results.run_data import RunData
+from evolvent.scene.plain_text import signed
+
+AWAY = "away from relief starts"
+"""Which largest pressure is meant where the contact of a spur pair passes kinks."""
 
 
 @dataclass(frozen=True)
@@ -63,3 +67,17 @@ def relief_kinks(run: RunData, index: int) -> list[ReliefKink]:
 def largest_kink(run: RunData, index: int) -> ReliefKink | None:
     """The kink with the largest pressure, at the friction coefficient with this index; None where there is no kink."""
     return max(relief_kinks(run, index), key=lambda kink: kink.pressure, default=None)
+
+
+def kink_notes(run: RunData, index: int) -> list[str]:
+    """Footnote of a picture of pressures at the friction coefficient with this index: the pressure over the start of a
+    linear relief, and what computed ones there are worth; none where there is no such start."""
+    kink = largest_kink(run, index)
+    if kink is None:
+        return []
+    covered = any(tooth.kink_pressure > 0.0 for each in run.positions for tooth in each[index].teeth)
+    return [
+        f"The largest pressure is that away from the starts of linear reliefs: where {kink.relief} begins, ξ = "
+        f"{signed(kink.roll_distance, 2)} mm, a sharp kink has about {kink.pressure:.0f} MPa (closed form).",
+        *(["Crosses, over these starts, scatter with the mesh, which rounds the kinks."] if covered else []),
+    ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -39,10 +40,13 @@ class ExtraResults:
     """Displacement and stress of the teeth in contact."""
 
 
-def write_output(run: RunContext, scene: Scene, record: SweepRecord, extra: ExtraResults, memory_MB: float) -> None:
+def write_output(
+    run: RunContext, scene: Scene, record: SweepRecord, extra: ExtraResults, memory_MB: float, said: Sequence[str] = ()
+) -> None:
     """Writes the tables, which mark the run as complete, and only then fields and pictures, which may fail.
 
     On rank 0 alone. record: of the sweep or wear study. memory_MB: largest resident memory of all ranks together.
+    said: warnings of how the positions were solved.
     Raises WriteError, FolderError.
     """
     begin, archive = time.perf_counter(), run.archive(scene)
@@ -56,7 +60,7 @@ def write_output(run: RunContext, scene: Scene, record: SweepRecord, extra: Extr
         return run.cost(timings, memory_MB)
 
     write_cost(archive.files, cost())  # the error bars are archived, so their cost is too
-    tables = summary(data, facts_of(data, record.meshes, run.comm.size, cost()))
+    tables = summary(data, facts_of(data, record.meshes, run.comm.size, cost()), said)
     write_tables(archive.files, tables)
     show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), run)
     if extra.deformation is not None:

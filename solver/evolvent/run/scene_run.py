@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
@@ -21,6 +22,7 @@ from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.meshing.modifications import modification_warnings, tip_edge_warnings
 from evolvent.gears.meshing.undercut import undercut_warnings
+from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
@@ -37,9 +39,11 @@ from evolvent.run.start import ResumePoint, elastic_point, no_results_warning, r
 from evolvent.run.wear_run import wear_scene, write_wear
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent.scene.skips import one_mesh_reason, skipped, switched_off, wanted_output
+from evolvent.scene.schema.output import SkipName
+from evolvent.scene.skips import Skipped, one_mesh_reason, skipped, skips, switched_off, wanted_output
 from evolvent.scene.vibration_limits import doubtful
 
+DEFLECTED_FLANKS: SkipName = "deflected-flanks"
 NOTHING_LEFT = "complete: nothing to compute, tables and pictures are written again"
 """Message of a resumed run that was complete."""
 
@@ -79,7 +83,7 @@ def run_scene(
                 vibrating = UnderMeshForce(point, prepare or prepare_model, partial(run.progress.stage, VIBRATION))
                 run = replace(run, prepare=vibrating)
             _log_beginning(run, solved)
-            _compute(run, solved, completed, point)
+            _compute(run, scene, solved, completed, point)
             if vibrating is not None and vibrating.operation is not None:
                 _write_operation(run, solved, vibrating.operation)
 
@@ -90,8 +94,7 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
         run.log.info("%s", left)
     if anew := run.on_first(lambda: no_results_warning(scene, run.archive(scene)) if run.resume else ""):
         run.log.warning(anew)
-    for skip in skipped(scene):
-        run.log.info("skipped, %s: %s", skip.name, skip.sentence)
+    _log_skips(run, [skip for skip in skipped(scene) if skip.name != DEFLECTED_FLANKS])
     for name in switched_off(scene):
         run.log.info("not skipped: %s", name)
     if sentence := one_mesh_reason(scene):
@@ -101,11 +104,23 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
         run.log.warning(sentence)
 
 
-def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None, point: OperatingPoint | None) -> None:
-    """Computes and writes everything that the scene asks for. point: operating point of its vibration, where it has
-    one."""
+def _log_skips(run: RunContext, made: Sequence[Skipped]) -> None:
+    """Logs which parts of the computation are left out."""
+    for skip in made:
+        run.log.info("skipped, %s: %s", skip.name, skip.sentence)
+
+
+def _compute(
+    run: RunContext, asked: Scene, scene: Scene, completed: ResumePoint | None, point: OperatingPoint | None
+) -> None:
+    """Computes and writes everything that the scene asks for. asked: the user's scene; scene: the same, on
+    deflected flanks where the run to be resumed is; point: operating point of its vibration, where it has one."""
+    said: list[str] = []
     if scene.wear is None:
         scene, record = sweep_scene(run, scene, completed)
+        _log_skips(run, [skip for skip in skipped(scene) if skip.name == DEFLECTED_FLANKS])  # known only now
+        if skips(asked, DEFLECTED_FLANKS) and not skips(scene, DEFLECTED_FLANKS):
+            said.append(ON_DEFLECTED)
     else:
         record = wear_scene(run, scene, point)
     companion = None
@@ -121,7 +136,7 @@ def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None, point
         run.progress.note(NOTHING_LEFT)
     run.progress.stage(OUTPUT)
     memory = run.memory_MB()
-    run.on_first(lambda: write_output(run, scene, record, ExtraResults(companion, deformation), memory))
+    run.on_first(lambda: write_output(run, scene, record, ExtraResults(companion, deformation), memory, said))
     if scene.wear is not None:
         run.on_first(lambda: write_wear(run, scene))
     run.on_first(run.folder.remove_parts)

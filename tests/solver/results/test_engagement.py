@@ -159,6 +159,16 @@ def test_round_off_does_not_decide_at_a_zone_limit() -> None:
         assert line_mean(cut, 0, (-4.0, 6.0)) == 1.0
 
 
+def test_mean_is_that_away_from_relief_starts() -> None:
+    """Problem: three slices, of which one covers the start of a linear relief, with ten times the others' pressure.
+    Exact: the mean of the others; none where all cover it."""
+    ones, no = np.ones(3), np.zeros(3, dtype=bool)
+    peak, ξ = np.array([10.0, 1.0, 1.0]), np.array([-1.0, 0.0, 1.0])
+    cut = resolved_slices(np.zeros(3, dtype=int), ones, ξ, ones, ones, peak, peak, ones, peak, ones, no)
+    assert line_mean(replace(cut, kink=np.array([True, False, False])), 0, (-4.0, 6.0)) == 1.0
+    assert np.isnan(line_mean(replace(cut, kink=~no), 0, (-4.0, 6.0)))
+
+
 def test_sign_changes_are_interpolated() -> None:
     """y = x² − 2 on a grid that misses ±√2; linear interpolation errs by h²/8·y''/|y'| < 1e-4; NaN is skipped."""
     x = np.linspace(-3.0, 3.0, 302)

@@ -17,6 +17,7 @@ from evolvent.results.tables.figure_rows import friction_rows, position_rows
 from evolvent.results.tables.run_warnings import warnings_of
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
+from evolvent.scene.plain_text import brief
 from evolvent.scene.scene import scene_from_text
 from evolvent_meshes.arrays import Floats
 from tests.support.run_parts import GOOD
@@ -105,6 +106,9 @@ def test_pressure_over_a_kink_stands_apart_and_is_warned_of(missed: RunData) -> 
     assert ξ == pytest.approx(wheel.roll_distance, abs=1e-4)
     (said,) = [sentence for sentence in warnings_of(missed, GOOD) if WORDS in sentence]
     assert "ξ = −4.04 mm" in said and "kink_pressure_MPa" in said and "parabolic" in said
+    share = 100.0 * np.isfinite(engagement(missed, 0).kink_pressure).mean()
+    assert "That and the mean, with their error bars, are those away from relief starts" in said
+    assert f"covers at {brief(share)} % of its positions." in said
 
 
 def test_largest_pressure_is_that_away_from_kinks(relieved: list[RunData]) -> None:
@@ -126,6 +130,17 @@ def test_largest_pressure_is_that_away_from_kinks(relieved: list[RunData]) -> No
     bar = few.spacing_error.max_pressure_MPa + many.spacing_error.max_pressure_MPa
     assert abs(few.max_pressure_MPa - many.max_pressure_MPa) < bar
     assert few.kink_pressure_MPa == pytest.approx(many.kink_pressure_MPa, rel=5e-3)
+
+
+def test_mean_pressure_is_that_away_from_kinks(relieved: list[RunData]) -> None:
+    """Exact: the mean has a value where the largest pressure has one, in the curve; and the largest one exceeds it,
+    as peaks over the kinks do not count."""
+    for run in relieved:
+        (row,), curve = friction_rows(run), engagement(run, 0)
+        assert np.array_equal(np.isfinite(curve.mean_pressure), np.isfinite(curve.max_pressure))
+        known = np.isfinite(curve.max_pressure)
+        assert row.mean_pressure_MPa == pytest.approx(float(np.mean(curve.mean_pressure[known])), rel=1e-12)
+        assert row.mean_pressure_MPa < row.max_pressure_MPa
 
 
 def test_tables_say_which_pressures_lie_over_a_kink(relieved: list[RunData]) -> None:

@@ -7,6 +7,7 @@ the scene that asks for deflected flanks; so a scene that `run` solves is not re
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +15,16 @@ import pytest
 
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.gears.solution import certificates
-from evolvent.run.dynamics.excitation import ON_DEFLECTED, run_excitation
+from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
+from evolvent.run.dynamics.excitation import run_excitation
 from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.dynamics.transient import transient_run
 from evolvent.run.dynamics.transient.transient_run import run_transient
+from evolvent.run.scene_run import run_scene
 from evolvent.run.strength.fatigue_run import run_fatigue
 from evolvent.run.strength.strength_run import run_strength
 from evolvent.scene.scene import Scene, load_scene
+from tests.support.checkout import ROOT
 
 BENT, BETWEEN = 344, 2e-3
 ASKED = "skip.off=deflected-flanks"
@@ -70,16 +74,34 @@ def test_transient_has_its_statics_on_deflected_flanks(bent: Path, tmp_path: Pat
 def test_strength_has_its_roots_on_deflected_flanks(bent: Path, tmp_path: Path) -> None:
     """Root stress at uniform and further positions, and the scene that is written."""
     found, asked = tmp_path / "found", tmp_path / "asked"
-    run_strength(scene(bent), found, quiet=True)
-    run_strength(scene(bent, ASKED), asked, quiet=True)
+    assert run_strength(scene(bent), found, quiet=True)[0] == ON_DEFLECTED
+    assert ON_DEFLECTED not in run_strength(scene(bent, ASKED), asked, quiet=True)
     same(asked, found, "strength.csv", "root_stress.csv", "strength.toml")
+
+
+def test_run_says_that_its_flanks_are_deflected(bent: Path, tmp_path: Path) -> None:
+    """One sentence, printed, in run.log and in summary.json, and again where the finished run is resumed; the log does
+    not say that deflected flanks are skipped. Nothing of it where the scene asks for them; where they are not needed,
+    as by a stiff spur pair, they are skipped, and the log says so."""
+    found, asked, stiff = (tmp_path / name for name in ("found", "asked", "stiff"))
+
+    def said(folder: Path, *settings: str, resume: bool = False, path: Path = bent) -> tuple[bool, bool, bool]:
+        run_scene(scene(path, *settings), folder, resume, quiet=True)
+        log, summary = ((folder / name).read_text(encoding="utf-8") for name in ("run.log", "summary.json"))
+        return ON_DEFLECTED in log, ON_DEFLECTED in json.loads(summary)["warnings"], "skipped, deflected" in log
+
+    assert said(found) == (True, True, False)
+    assert said(found, resume=True) == (True, True, False)
+    assert said(asked, ASKED) == (False, False, False)
+    same(asked, found, "teeth.csv", "scene.toml")
+    assert said(stiff, "mesh.level=quick", path=ROOT / "demos/he2022.toml") == (False, False, True)
 
 
 def test_fatigue_has_its_flanks_deflected(bent: Path, tmp_path: Path) -> None:
     """The flanks' loads, and the scene that is written."""
     found, asked = tmp_path / "found", tmp_path / "asked"
-    run_fatigue(scene(bent), found, quiet=True)
-    run_fatigue(scene(bent, ASKED), asked, quiet=True)
+    assert run_fatigue(scene(bent), found, quiet=True)[0] == ON_DEFLECTED
+    assert ON_DEFLECTED not in run_fatigue(scene(bent, ASKED), asked, quiet=True)
     same(asked, found, "fatigue.csv", "fatigue.toml")
 
 

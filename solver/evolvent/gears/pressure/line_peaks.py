@@ -174,7 +174,7 @@ def _radius_at(x: Floats, pair: GearPair, cut: Slices, fitted: Ints) -> Floats:
 
 
 def line_mean(cut: Slices, tooth: int, inner: tuple[float, float]) -> float:
-    """Mean of the fitted peak pressures [MPa] along a tooth's contact line between the tip-edge zones; NaN where no
-    slice with a fitted peak is left. inner: see `line_peak`."""
-    here = (cut.tooth == tooth) & has_peak(cut) & between(cut.roll_distance, inner)
+    """Mean of the fitted peak pressures [MPa] along a tooth's contact line between the tip-edge zones and away from
+    relief starts; NaN where no slice with a fitted peak is left. inner: see `line_peak`."""
+    here = (cut.tooth == tooth) & counts(cut) & between(cut.roll_distance, inner)
     return float(np.average(cut.peak[here], weights=cut.width[here])) if here.any() else float("nan")

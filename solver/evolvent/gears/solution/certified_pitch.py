@@ -22,6 +22,8 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.gears.sweep.position_result import PositionResult
 
 LOG = logging.getLogger("evolvent")
+ON_DEFLECTED = "The pitch was solved on deflected flanks: before deflection its energy does not balance."
+"""Sentence printed where deflected flanks were not asked for."""
 T = TypeVar("T")
 Observer = Callable[[SweptPosition], object]
 """Function called with each position once it is certified: it archives the position, or shows progress."""

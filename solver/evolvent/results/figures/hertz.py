@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -23,11 +25,14 @@ from evolvent.results.drawing.style import (
 )
 from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import cells_across, few_cells_across
+from evolvent.results.relief_kinks import AWAY, kink_notes, largest_kink, relief_kinks
 from evolvent.results.run_data import RunData
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats
 
 HERTZ = "#c98a1b"
+KINK: dict[str, Any] = {"marker": "D", "markersize": 6.0, "markerfacecolor": "white", "linestyle": "", "color": HERTZ}
+"""Marker of the pressure over a sharp kink."""
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 
 
@@ -45,7 +50,7 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     if few_cells_across(run):
         few = f"{cells_across(run):.1f} elements across the contact, fewer than {FEWEST_CELLS:g}"
         subtitle += f" For orientation only: {few}."
-    figure = sheet("Contact stress compared with Hertz", subtitle, (11.4, 5.4))
+    figure = sheet("Contact stress compared with Hertz", subtitle, (11.4, 6.2))
     along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
     along.plot(
         ξ[inside],
@@ -67,26 +72,33 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     )
     if kink.any():
         along.plot(ξ[kink], peak[kink], "x", color=FAINT, markersize=4.0, label=f"computed, {OVER_KINK}")
+    for number, each in enumerate(relief_kinks(run, index)):
+        name = None if number else f"closed form, {OVER_KINK}"
+        along.plot(each.roll_distance, each.pressure, label=name, **KINK)
     estimate, line = run.scene.hertz_estimate(), np.linspace(start, end, 200)
     uniform = "Hertz, uniform load on the mean line length"
     along.plot(line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label=uniform)
     _largest(along, run, index)
     along.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
     along.set(xlabel="roll distance ξ from the pitch point [mm]", ylabel="peak pressure [MPa]")
-    along.set_ylim(0.0, 1.32 * along.get_ylim()[1])  # the legend lies above the curves
-    along.legend(loc="upper right")
+    along.set_ylim(bottom=0.0)
+    along.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
     _estimates(bars, run, index, ξ, peak)
-    if not run.plane:
-        pooled = "The reported maximum is averaged with neighbouring slices (1:2:1)"
-        foot(figure, f"{pooled}; single slices scatter about it.")
+    pooled = "The reported maximum is averaged with neighbouring slices (1:2:1); single slices scatter about it."
+    foot(figure, *([] if run.plane else [pooled]), *kink_notes(run, index))
     return figure
+
+
+def _largest_named(run: RunData, index: int) -> str:
+    """Name of the largest pressure that the run reports."""
+    return f"computed, largest {AWAY}" if largest_kink(run, index) else "computed, largest"
 
 
 def _largest(axes: Axes, run: RunData, index: int) -> None:
     """Marker of the largest pressure that the run reports, with its error bar; it may lie between two positions."""
     top, bar = largest_peak(run, index), run.errors.bar("max_pressure_MPa", index)
     face = {"markerfacecolor": "white" if top.at_zone_end else INK}
-    label = "computed, largest" + (f": {AT_ZONE_END}" if top.at_zone_end else "")
+    label = _largest_named(run, index) + (f": {AT_ZONE_END}" if top.at_zone_end else "")
     size = bar if np.isfinite(bar) else None
     line = {"color": INK, "capsize": 4.0, "linewidth": 1.2}
     axes.errorbar(top.roll_distance, top.pressure, yerr=size, label=label, **(line | HOLLOW | face))
@@ -94,14 +106,15 @@ def _largest(axes: Axes, run: RunData, index: int) -> None:
 
 def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:
     """Bars of Hertz at the pitch point and of computed pressures."""
-    estimate = run.scene.hertz_estimate()
+    estimate, kink = run.scene.hertz_estimate(), largest_kink(run, index)
     near = np.isfinite(peak) & (np.abs(ξ) < 0.25 * run.pair.pinion.normal_module)
     shortest = float(estimate.peak_pressure(0.0, estimate.line_lengths[0]))
     rows = [
         ("Hertz at the pitch point,\nmean line length", float(estimate.peak_pressure(0.0)), HERTZ),
         ("Hertz at the pitch point,\nshortest line", shortest, HERTZ),
         *([("computed near the\npitch line, median", float(np.median(peak[near])), PINION)] if near.any() else ()),
-        ("computed, largest", largest_peak(run, index).pressure, PINION),
+        *([("sharp relief start,\nclosed form", kink.pressure, HERTZ)] if kink else ()),
+        (_largest_named(run, index).replace(" away", "\naway"), largest_peak(run, index).pressure, PINION),
     ]
     bar = run.errors.bar("max_pressure_MPa", index)
     places = np.arange(len(rows))[::-1]

@@ -21,7 +21,7 @@ from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, OVER
 from evolvent.results.drawing.teeth import long_name, short_name, shown_teeth
 from evolvent.results.engagement import Engagement, EngagementPeak, crossing, engagement, engagements, with_hertz
 from evolvent.results.mesh_facts import cells_across, few_cells_across
-from evolvent.results.relief_kinks import largest_kink
+from evolvent.results.relief_kinks import AWAY, kink_notes, largest_kink
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import few_positions
@@ -48,7 +48,7 @@ def engagement_stress(run: RunData) -> Figure:
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
     between = f"The largest stress is taken between the tip-edge zones, from ξ = {low} to {high} mm."
-    foot(figure, between, *_away_from_kinks(run), *_resolved(run), *_sampled(run))
+    foot(figure, between, *kink_notes(run, int(np.argmin(run.frictions))), *_resolved(run), *_sampled(run))
     for curve, colour in zip(curves, friction_colours(run.frictions)):
         for end in _zone_ends(curve):
             main.plot(np.degrees(end.angle), end.pressure, color=colour, **HOLLOW)
@@ -142,17 +142,6 @@ def _resolved(run: RunData) -> list[str]:
     return [
         f"Only {cells_across(run):.1f} elements across the contact: points as computed; lines: Hertz for the same loads"
         f" times the running median, over {MEDIAN} positions, of computed over Hertz."
-    ]
-
-
-def _away_from_kinks(run: RunData) -> list[str]:
-    """Footnote with the pressure over the start of a linear relief, where there is one, else none."""
-    kink = largest_kink(run, int(np.argmin(run.frictions)))
-    if kink is None:
-        return []
-    return [
-        f"It is that away from the starts of linear reliefs: where {kink.relief} begins, ξ = "
-        f"{signed(kink.roll_distance, 2)} mm, a sharp kink has about {kink.pressure:.0f} MPa (closed form)."
     ]
 
 
@@ -254,7 +243,8 @@ def _engagement_subtitle(run: RunData, curves: Sequence[Engagement], cross: floa
     lowest, highest = _lowest(curves), _highest(curves)
     top = lowest.peak
     place = signed(float(np.degrees(top.angle)))
-    peak = f"Largest {plus_minus(top.pressure, bar, 0)} MPa at {place}° (μ = {lowest.friction:g})"
+    away = f" {AWAY}" if largest_kink(run, int(np.argmin(run.frictions))) else ""
+    peak = f"Largest{away} {plus_minus(top.pressure, bar, 0)} MPa at {place}° (μ = {lowest.friction:g})"
     if len(curves) == 1:
         return peak + "."
     angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))

@@ -83,7 +83,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         max_pressure_at_zone_end=top.at_zone_end,
         kink_pressure_MPa=kink.pressure if kink else math.nan,
         kink_pressure_angle_deg=degrees(kink.roll_distance / run.pair.pinion.base_radius) if kink else math.nan,
-        mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
+        mean_pressure_MPa=curve.whole_mean,
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
         mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),
         secant_stiffness_N_per_mm_um=float(np.mean([secant_stiffness(run, each[index]) for each in run.positions])),

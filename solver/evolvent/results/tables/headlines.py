@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from evolvent.results.archive.error_bar_data import plus_minus
+from evolvent.results.relief_kinks import AWAY
 
-LARGEST, AWAY = "largest pressure", "largest pressure away from relief starts"
-"""Name of the largest pressure, and that beside the pressure over the start of a linear relief."""
+LARGEST = "largest pressure"
+"""Name of the largest contact pressure, followed by `AWAY` beside the pressure over the start of a linear relief."""
 FIGURES = (
     ("max_pressure_MPa", LARGEST, "MPa", 0),
     ("kink_pressure_MPa", "over the sharp start of a linear relief about", "MPa", 0),
@@ -40,7 +41,7 @@ def has_error_bars(summary: Path) -> bool:
 def figure_texts(row: Mapping[str, Any], bars: Mapping[str, float | None]) -> list[str]:
     """Name, value, error bar and unit of each figure that is known. row, bars: by key of summary.json."""
     known = [figure for figure in FIGURES if _said(figure[0], row.get(figure[0]))]
-    names = {LARGEST: AWAY} if row.get("kink_pressure_MPa") is not None else {}
+    names = {LARGEST: f"{LARGEST} {AWAY}"} if row.get("kink_pressure_MPa") is not None else {}
     return [
         f"{names.get(name, name)} {plus_minus(row[key], bars.get(key) or 0.0, digits)} {unit}".rstrip()
         for key, name, unit, digits in known

@@ -42,8 +42,8 @@ class LoadRow:
     """Contact pressure over the start of a linear relief, for an ideal kink, as in summary.json; NaN where there is
     none."""
     mean_pressure_MPa: float
-    """Mean contact pressure, as in summary.json; it depends less on the mesh than the largest one, so that torques can
-    be compared by it."""
+    """Mean contact pressure, as in summary.json. Where the largest pressure lies at the end of a tip-edge zone, which
+    moves with the mesh, torques can be compared by the mean; its error bar may be the wider one, and says how well."""
     mean_pressure_MPa_error: float
     """Estimated error of the mean contact pressure."""
     mesh_stiffness_N_per_mm_um: float

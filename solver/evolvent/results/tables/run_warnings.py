@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, FINER, SCATTER, few_cells
-from evolvent.results.engagement import largest_peak
+from evolvent.results.engagement import engagements, largest_peak
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.relief_kinks import largest_kink
 from evolvent.results.run_data import RunData, SolvedPosition
@@ -35,6 +37,9 @@ NAMES = {
 }
 """Key of a figure with an error bar -> its name and unit in messages; the secant stiffness follows the tangent."""
 
+RELIEVE = "relieve the tips (tip_relief_um), or relieve them more"
+"""Remedy against contact on tip edges."""
+
 
 def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
     """Warnings of a finished run, a sentence each. mesh: quality of its meshes."""
@@ -42,7 +47,7 @@ def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
     about = (
         chart_warnings(run.scene),
         _about_the_load(run), _about_the_mesh(run, mesh), _about_tip_edges(run), _about_relief(run),
-        _about_large_bars(rows), _about_error_bars(run), _about_spacing(run, rows),
+        _about_large_bars(rows), _about_error_bars(run), about_spacing(run, rows),
     )
     return tuple(sentence for each in about for sentence in each)
 
@@ -92,14 +97,12 @@ def _few_cells(run: RunData) -> str:
 
 def _about_tip_edges(run: RunData) -> Iterator[str]:
     """Warnings of contact on tip edges, and of a largest pressure at the limit of a tip-edge zone."""
-    bears = [any(tooth.edge_pressure > 0.0 for solved in each for tooth in solved.teeth) for each in run.positions]
-    if not any(bears):
+    found = tip_edge_contact(run)
+    if not found:
         return
-    share = max(_edge_share(solved) for each in run.positions for solved in each)
     yield (
-        f"Tip-edge contact at {sum(bears)} of {len(bears)} positions, on teeth with up to {brief(100.0 * share)} % of "
-        "the load: the pressure there is singular, grows with mesh refinement, and is reported separately "
-        "(edge_pressure_MPa); relieve the tips (tip_relief_um), or relieve them more."
+        f"{found}: the pressure there is singular, grows with mesh refinement, and is reported separately "
+        f"(edge_pressure_MPa); {RELIEVE}."
     )
     peaks = [largest_peak(run, index) for index in range(len(run.frictions))]
     if any(peak.at_zone_end for peak in peaks):
@@ -108,6 +111,18 @@ def _about_tip_edges(run: RunData) -> Iterator[str]:
             f"The largest pressure occurs where a tip-edge zone begins (ξ = {signed(ξ, 2)} mm) and rises further "
             "inside it: its value depends on the limit of the zone, and so on the mesh; relieve the tips."
         )
+
+
+def tip_edge_contact(run: RunData) -> str:
+    """How often tip edges bear, and how much, as the beginning of a sentence; empty where none bears."""
+    bears = [any(tooth.edge_pressure > 0.0 for solved in each for tooth in solved.teeth) for each in run.positions]
+    if not any(bears):
+        return ""
+    share = max(_edge_share(solved) for each in run.positions for solved in each)
+    return (
+        f"Tip-edge contact at {sum(bears)} of {len(bears)} positions, on teeth with up to {brief(100.0 * share)} % of "
+        "the load"
+    )
 
 
 def _edge_share(solved: SolvedPosition) -> float:
@@ -128,9 +143,16 @@ def _about_relief(run: RunData) -> Iterator[str]:
     yield (
         f"Where a linear {kink.relief} begins (ξ = {signed(kink.roll_distance, 2)} mm) the flank has a kink: over it "
         f"Hertz' pressure rises from {brief(kink.hertz)} to about {brief(kink.pressure)} MPa (kink_pressure_MPa), more "
-        "than the largest pressure, which is that away from relief starts; the rise depends on how sharp the kink is "
-        f'manufactured; take {kink.relief.replace(" ", "_")}_form = "parabolic".'
+        "than the largest pressure. That and the mean, with their error bars, are those away from relief starts, which "
+        f"the contact of a tooth covers at {brief(100.0 * _covered(run))} % of its positions. The rise depends on how "
+        f'sharp the kink is manufactured; take {kink.relief.replace(" ", "_")}_form = "parabolic".'
     )
+
+
+def _covered(run: RunData) -> float:
+    """Share of the positions of an engagement at which the contact covers the start of a linear relief, the largest of
+    all friction coefficients."""
+    return max(float(np.isfinite(curve.kink_pressure).mean()) for curve in engagements(run))
 
 
 def _about_large_bars(rows: Sequence[FrictionRow]) -> Iterator[str]:
@@ -159,9 +181,9 @@ def _about_error_bars(run: RunData) -> Iterator[str]:
         yield f"There are no error bars. {run.errors.missing}"
 
 
-def _about_spacing(run: RunData, rows: Sequence[FrictionRow]) -> Iterator[str]:
-    """Warning of figures whose error is mostly due to the spacing of positions."""
-    figures = [text for name in NAMES if (text := _spaced(max(rows, key=lambda row: _share(row, name)), name))]
+def about_spacing(run: RunData, rows: Sequence[FrictionRow], names: Sequence[str] = tuple(NAMES)) -> Iterator[str]:
+    """Warning of figures whose error is mostly due to the spacing of positions. names: keys of these figures."""
+    figures = [text for name in names if (text := _spaced(max(rows, key=lambda row: _share(row, name)), name))]
     if figures:
         step = math.degrees(run.pitch) / len(run.positions)
         yield (

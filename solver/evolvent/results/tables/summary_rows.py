@@ -15,7 +15,7 @@ from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.shaft_forces import ShaftForces
 from evolvent.scene.skips import Skipped
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """Version of the form of summary.json: raised where a key is removed, renamed or changes its meaning, not for new
 keys."""
 
@@ -134,7 +134,8 @@ class FrictionRow:
     """Pinion rotation of the tooth at which the nominal contact passes that start of a relief; null as above."""
     mean_pressure_MPa: float
     """Mean over the engagement of the peak pressure p0 across the contact, averaged along the line between the tip-edge
-    zones."""
+    zones. On a spur pair it is that away from the starts of linear tip and root reliefs, as the largest pressure is:
+    rotations at which the contact covers such a start are left out."""
     transmission_error_peak_to_peak_um: float
     """Largest less smallest transmission error of the pitch."""
     mesh_stiffness_N_per_mm_um: float

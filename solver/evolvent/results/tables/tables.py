@@ -6,6 +6,7 @@ incomplete table.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 
 from evolvent.results.archive.run_folder import RunFolder
@@ -16,13 +17,13 @@ from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, RunF
 from evolvent.results.tables.table import csv_text, json_text
 
 
-def summary(run: RunData, facts: RunFacts) -> Summary:
-    """The content of summary.json."""
+def summary(run: RunData, facts: RunFacts, said: Sequence[str] = ()) -> Summary:
+    """The content of summary.json. said: warnings of how the positions were solved."""
     return Summary(
         **vars(facts),
         schema_version=SCHEMA_VERSION,
         scene=run.scene.model_dump(mode="json"),
-        warnings=warnings_of(run, facts.mesh),
+        warnings=(*said, *warnings_of(run, facts.mesh)),
         estimated_error=ErrorBars(run.errors.method, run.errors.missing or None),
         frictions=tuple(friction_rows(run)),
         positions=tuple(position_rows(run)),

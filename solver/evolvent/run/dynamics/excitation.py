@@ -24,7 +24,7 @@ from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import GearModel, Mesher, Preparer, prepare_model
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
-from evolvent.gears.solution.certified_pitch import balanced
+from evolvent.gears.solution.certified_pitch import ON_DEFLECTED, balanced
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import draw
@@ -37,8 +37,6 @@ from evolvent.run.folder_checks import require_unfinished, writing_to
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.arrays import Floats
-
-ON_DEFLECTED = "The pitch was solved on deflected flanks: before deflection its energy does not balance."
 
 
 def run_excitation(

@@ -39,7 +39,7 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
     for friction in frictions:
         changed = friction != frictions[0]
         shown = [
-            (name, _with_flags(row, known.get((frictions[0], criterion.name, place)) if changed else None))
+            (name, _with_flags(row, changed))
             for criterion, place, name in SHOWN
             if (row := known.get((friction, criterion.name, place))) is not None
         ]
@@ -48,12 +48,13 @@ def fatigue_lines(folder: Path) -> Iterator[str]:
         yield f"μ = {friction:g}: {'; '.join(found)}"
 
 
-def _with_flags(row: FatigueRow, first: FatigueRow | None) -> FatigueRow:
-    """A row with the flags of the point that is printed: those of the first coefficient's row where it is that row's
-    point."""
-    if first is None or not _at_point(row, changed=True):
+def _with_flags(row: FatigueRow, changed: bool) -> FatigueRow:
+    """A row with the flags of the point that is printed. changed: whether the point of comparison is printed."""
+    if not _at_point(row, changed):
         return row
-    return replace(row, at_zone_end=first.at_zone_end, near_friction_reversal=first.near_friction_reversal)
+    return replace(
+        row, at_zone_end=row.point_at_zone_end, near_friction_reversal=row.point_near_friction_reversal
+    )
 
 
 def _named(name: str, row: FatigueRow, changed: bool) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from mpi4py import MPI
@@ -10,14 +11,15 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.pressure.contact_cells import coarse_contact
-from evolvent.gears.solution.certified_pitch import certified_pitch
-from evolvent.results.archive.error_bar_data import EstimatedErrors
+from evolvent.gears.solution.certified_pitch import ON_DEFLECTED, certified_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import draw
 from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.results.error_bars.estimation import estimated_errors
 from evolvent.results.mesh_facts import cells_across
 from evolvent.results.run_data import RunData
+from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.results.tables.run_warnings import about_spacing
 from evolvent.run.coarse_run import as_run, solve_companion
 from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.pitch_run import pitch_of
@@ -58,6 +60,7 @@ def run_fatigue(
     checked = writing_to(out, comm, lambda: require_new(out, WRITTEN, FATIGUE.name, overwrite))
     with checked, Progress(hidden=hidden) as progress:
         solved, run = _solved(scene, comm, progress, prepare)
+        on_others = [ON_DEFLECTED] if solved is not scene else []
         companion = None
         if wanted_output(scene).error_bars:
             progress.stage(ERROR_BARS)
@@ -68,7 +71,8 @@ def run_fatigue(
             assert run is not None
             errors = run.errors if companion is None else estimated_errors(run, companion)
             said = [errors.missing] if companion is not None and errors.missing else []
-            return [*said, *_written(run, errors, None if companion is None else companion.run, out)]
+            coarse = None if companion is None else companion.run
+            return [*on_others, *said, *_written(replace(run, errors=errors), coarse, out)]
 
         return on_first(comm, written)
 
@@ -123,10 +127,10 @@ def _materials(run: RunData) -> tuple[FatigueMaterial, FatigueMaterial]:
     return pinion, wheel
 
 
-def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out: Path) -> list[str]:
-    """Writes all files, in place of those of an earlier call. On rank 0 alone."""
+def _written(run: RunData, coarse: RunData | None, out: Path) -> list[str]:
+    """Writes all files, in place of those of an earlier call. run: with its error bars. On rank 0 alone."""
     section = run.scene.fatigue or FatigueSection()
-    found = [_fatigue(run, k, errors.bar("max_pressure_MPa", k), coarse) for k in range(len(run.frictions))]
+    found = [_fatigue(run, k, run.errors.bar("max_pressure_MPa", k), coarse) for k in range(len(run.frictions))]
     facts = [
         fatigue_facts(run.pair, each, _positions(run, k), run.inner_path, _materials(run))
         for k, each in enumerate(found)
@@ -143,4 +147,5 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
     pictures = [FATIGUE_PICTURE] if wanted_output(run.scene).pictures else []
     failures = draw(from_tables(pictures, out), folder).failures
     said = [*failures, *chart_warnings(run.scene), *coarse_contact(cells_across(run))]
+    said += about_spacing(run, friction_rows(run), ["max_pressure_MPa"])
     return [*said, *(sentence for pair in zip(facts, found) for sentence in warnings_of(*pair))]

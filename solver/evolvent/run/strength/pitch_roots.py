@@ -14,6 +14,8 @@ from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.solution.certificates import certify
 from evolvent.gears.solution.certified_pitch import certified_pitch
+from evolvent.results.tables.run_warnings import tip_edge_contact
+from evolvent.run.coarse_run import as_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
@@ -35,6 +37,8 @@ class PitchRoots:
     """Root stresses of both gears at each friction coefficient."""
     deflected: bool
     """Whether contact was searched again on deflected flanks."""
+    tip_edges: str
+    """Beginning of a sentence on contact on tip edges, see `tip_edge_contact`; empty where none bears."""
 
 
 def scene_root_meshes(scene: Scene) -> tuple[RootMesh, RootMesh]:
@@ -70,7 +74,9 @@ def pitch_roots(
     further = sorted((each for each in every.positions if each.angle not in known), key=lambda each: each.angle)
     for position in further:
         certify(position.results)
-    return PitchRoots(tuple(each.angle for each in further), every.roots, solved.deflected)
+    run = as_run(scene, gears, solved, comm)
+    edges = on_first(comm, lambda: "" if run is None else tip_edge_contact(run))
+    return PitchRoots(tuple(each.angle for each in further), every.roots, solved.deflected, edges)
 
 
 def _outer_points(problem: GearProblem) -> list[float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -12,9 +12,13 @@ from mpi4py import MPI
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
+from evolvent.gears.meshing.modifications import modification_warnings, tip_edge_warnings
+from evolvent.gears.meshing.undercut import undercut_warnings
+from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import draw
 from evolvent.results.drawing.table_pictures import from_tables
+from evolvent.results.tables.run_warnings import RELIEVE
 from evolvent.run.companion import Attempt, attempted
 from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.progress import ERROR_BARS, OUTPUT, Progress
@@ -71,7 +75,7 @@ def run_strength(
     with checked, Progress(hidden=hidden) as progress:
         fine_mesh, coarse_mesh = scene_root_meshes(scene)
         fine = pitch_roots(scene, fine_mesh, comm, progress, prepare=prepare)
-        scene = with_deflected_flanks(scene) if fine.deflected else scene
+        asked, scene = scene, with_deflected_flanks(scene) if fine.deflected else scene
         coarse = Attempt[PitchRoots]()
         if wanted_output(scene).error_bars:
             again = partial(pitch_roots, scene, coarse_mesh, comm, progress, ERROR_BARS, fine.angles, prepare)
@@ -79,7 +83,19 @@ def run_strength(
         progress.stage(OUTPUT)
         found = _by_friction(scene, fine.roots, None if coarse.value is None else coarse.value.roots)
         said = on_first(comm, lambda: _written(scene, loads, found, out))
-    return [*said, *chart_warnings(scene), *formula_warnings(loads), *filter(None, [coarse.reason])]
+    said = [*([] if scene is asked else [ON_DEFLECTED]), *said, *chart_warnings(scene), *formula_warnings(loads)]
+    return [*said, *_about_tip_edges(scene, fine), *filter(None, [coarse.reason])]
+
+
+def _about_tip_edges(scene: Scene, found: PitchRoots) -> Iterator[str]:
+    """Warnings of `run` on flanks and tips, and on what tip edges that bear mean for the roots."""
+    problem = gear_problem(scene)
+    yield from (*undercut_warnings(problem), *modification_warnings(problem), *tip_edge_warnings(problem))
+    if found.tip_edges:
+        yield (
+            f"{found.tip_edges}: what an edge bears its neighbours do not, so that shares of the load and stresses at "
+            f"the roots rest on contact of edges; {RELIEVE}."
+        )
 
 
 def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:

@@ -53,6 +53,11 @@ class FatigueRow:
     """Value at the point of comparison, and for below largest over the depths."""
     point_depth_um: float
     """Depth of the value at the point of comparison."""
+    point_at_zone_end: bool
+    """Whether the point of comparison lies beside the zone of a tip edge."""
+    point_near_friction_reversal: bool
+    """Whether friction reverses near the point of comparison at this friction coefficient or at the first one: the
+    change rests on both histories."""
     change_percent: float
     """Change of the value at the point of comparison over that at the first friction coefficient; NaN without such a
     point."""
@@ -84,7 +89,7 @@ class FatigueLifeRow:
     """Source of the exponent; empty for those of fatigue.exponents."""
     life_ratio: float
     """Ratio of lives at one point of the flank, `point_roll_distance_mm` of fatigue.csv, which may lie beside a
-    tip-edge zone (`at_zone_end` of the first coefficient there). NaN where the criterion is negligible at the first
+    tip-edge zone (`point_at_zone_end` there). NaN where the criterion is negligible at the first
     coefficient, and of orthogonal shear and tension at the surface, which are multiples of μ p0: such lives would be
     those of the friction coefficients alone. Infinite where it is negligible at this coefficient alone."""
     life_ratio_at_points: float

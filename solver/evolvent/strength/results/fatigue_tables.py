@@ -148,6 +148,7 @@ def _largest(
         unit=criterion.unit, value_error=math.nan, diameter_mm=math.nan, height_mm=math.nan, depth_um=math.nan,
         roll_distance_mm=math.nan, pressure_MPa=math.nan, at_zone_end=False, near_friction_reversal=False,
         at_depth_limit=False, point_roll_distance_mm=math.nan, point_value=math.nan, point_depth_um=math.nan,
+        point_at_zone_end=False, point_near_friction_reversal=False,
         change_percent=math.nan, change_percent_error=math.nan, change_at_points_percent=math.nan,
         change_at_points_percent_error=math.nan,
     )
@@ -161,13 +162,18 @@ def _largest(
     errors = _change_errors(member, each, criterion, place, first)
     at_point, at_points = _change_percents(own, first.gears[member], criterion, place)
     point = _point(own, first.gears[member], criterion, place)
+    reverses_there = _reverses_at_point(
+        pair, member, each, first, compared_point(own, first.gears[member], criterion, place)
+    )
     return replace(
         nothing, value=value, value_error=value * criterion.pressure_power * each.pressure_error,
         diameter_mm=float(diameters(pair, member, np.array([ξ]))[0]), height_mm=float(own.loads.height[k]),
         depth_um=1e3 * float(own.depths_mm[k, columns[m]]), roll_distance_mm=ξ, pressure_MPa=float(own.loads.peak[k]),
         at_zone_end=each.at_zone_end(ξ), near_friction_reversal=bool(reverses[k]),
         at_depth_limit=place == BELOW and m in (0, len(columns) - 1), point_roll_distance_mm=point[0],
-        point_value=point[1], point_depth_um=point[2], change_percent=at_point, change_percent_error=errors[0],
+        point_value=point[1], point_depth_um=point[2], point_at_zone_end=each.at_zone_end(point[0]),
+        point_near_friction_reversal=criterion.of_history and reverses_there, change_percent=at_point,
+        change_percent_error=errors[0],
         change_at_points_percent=at_points, change_at_points_percent_error=errors[1],
     )
 
@@ -179,6 +185,19 @@ def _point(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: 
         return math.nan, math.nan, math.nan
     k = point[0]
     return float(own.loads.roll_distance[k]), *_deepest(own, own.values[criterion][k], 1e3 * own.depths_mm[k], place)
+
+
+def _reverses_at_point(
+    pair: GearPair, member: Member, each: FrictionFatigue, first: FrictionFatigue, point: tuple[int, int] | None
+) -> bool:
+    """Whether friction reverses near the point at which coefficients are compared, at either of both. point: see
+    `compared_point`."""
+    if point is None:
+        return False
+    return any(
+        near_reversal(pair, member, found.gears[member].loads, found.friction)[k]
+        for found, k in zip((each, first), point)
+    )
 
 
 def _change_percents(

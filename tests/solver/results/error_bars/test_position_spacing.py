@@ -29,7 +29,7 @@ from evolvent.results.figures.flank import pressure_map
 from evolvent.results.figures.stress import engagement_stress
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.results.tables.run_warnings import SPACING_SAID, warnings_of
+from evolvent.results.tables.run_warnings import SPACING_SAID, about_spacing, warnings_of
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.scene import load_scene
@@ -183,6 +183,8 @@ def test_few_positions_are_warned_of(run: RunData) -> None:
     for each, words in ((run, "causes errors"), (replace(run, errors=errors), "most of the error bars")):
         (said,) = [sentence for sentence in warnings_of(each, GOOD) if "sweep.positions" in sentence]
         assert words in said and "MPa of the largest pressure (" in said and "Positions are 1.0° apart" in said
+        (alone,) = about_spacing(each, friction_rows(each), ["max_pressure_MPa"])
+        assert words in alone and "largest pressure" in alone and alone.count("±") == 1
     smooth = synthetic_run("contact.friction=0.1", "sweep.positions=24")
     assert not any("sweep.positions" in sentence for sentence in warnings_of(smooth, GOOD))
 

@@ -18,6 +18,7 @@ from evolvent.results.figures.hertz import hertz_comparison
 from evolvent.results.figures.stress import engagement_stress
 from evolvent.results.figures.trend import friction_trend
 from evolvent.results.mesh_facts import few_cells_across
+from evolvent.results.relief_kinks import AWAY
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent_meshes.arrays import Floats
@@ -97,7 +98,8 @@ def test_largest_pressure_beside_hertz_has_its_error_bar(steep: RunData) -> None
 def test_pressures_over_relief_starts_are_marked_apart() -> None:
     """Problem: a spur pair with linear tip reliefs. Exact: 03 has the largest pressure in its line, with gaps, crosses
     where the contact covers the start of a relief, their name in the legend and the pressure of a sharp kink in words;
-    10 has the same slices apart."""
+    10 has the same slices apart, and the closed form among them and beside the estimates. Both say that the largest
+    one is that away from relief starts, and what crosses are worth. The legend of 10 covers no curve."""
     relief = ("pinion.tip_relief_um=20", "wheel.tip_relief_um=20")
     run = synthetic_run("sweep.positions=24", *relief, file="demos/he2022.toml")
     (row,), curve = friction_rows(run), engagement(run, 0)
@@ -109,6 +111,14 @@ def test_pressures_over_relief_starts_are_marked_apart() -> None:
     assert OVER_KINK in legend_of(over_turn) and f"computed, {OVER_KINK}" in legend_of(hertz)
     assert any(f"{row.kink_pressure_MPa:.0f} MPa (closed form)" in text.get_text() for text in over_turn.texts)
     assert row.max_pressure_MPa == curve.peak.pressure < row.kink_pressure_MPa
+    assert over_turn.texts[1].get_text().startswith(f"Largest {AWAY} {row.max_pressure_MPa:.0f} MPa")
+    assert {f"computed, largest {AWAY}", f"closed form, {OVER_KINK}"} < set(legend_of(hertz))
+    assert np.isclose(drawn(hertz, 0), row.kink_pressure_MPa).any()
+    assert f"{row.kink_pressure_MPa:.0f}" in [text.get_text() for text in hertz.axes[1].texts]
+    assert all(any("scatter with the mesh" in text.get_text() for text in each.texts) for each in (over_turn, hertz))
+    hertz.draw_without_rendering()
+    legend = hertz.axes[0].get_legend()
+    assert legend is not None and legend.get_window_extent().y1 < hertz.axes[0].get_window_extent().y0
 
 
 def test_crossing_is_not_given_on_few_cells() -> None:

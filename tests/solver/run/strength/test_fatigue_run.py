@@ -38,8 +38,8 @@ def rows(path: Path) -> list[dict[str, str]]:
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With error bars; a contact that is less than two elements wide is said."""
     folder = tmp_path_factory.mktemp("fatigue")
-    (said,) = run_fatigue(scene(), folder, quiet=True)
-    assert "elements across the contact (median): below 2" in said
+    few, apart = run_fatigue(scene(), folder, quiet=True)
+    assert "elements across the contact (median): below 2" in few and "sweep.positions" in apart
     return folder
 
 
@@ -98,6 +98,9 @@ def test_life_ratios_follow_the_changes(out: Path) -> None:
     lives = rows(out / "fatigue_life.csv")
     assert {float(row["friction"]) for row in lives} == {0.107}
     for row in lives:
+        if row["place"] == "surface" and row["criterion"] in ("orthogonal_shear_range", "tension"):
+            assert row["life_ratio"] == "nan"
+            continue
         whole = largest(out, row["gear"], row["criterion"], row["place"], 0.107)
         ratio = 1.0 + float(whole["change_percent"]) / 100.0
         assert float(row["life_ratio"]) == pytest.approx(ratio ** -float(row["exponent"]), rel=1e-6)
@@ -135,7 +138,7 @@ def test_facts(out: Path) -> None:
 def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:
     """All tables but that of lives."""
     alone = scene("contact.friction=0.1", "output.error_bars=false", "output.pictures=false")
-    assert len(run_fatigue(alone, tmp_path, quiet=True)) == 1
+    assert len(run_fatigue(alone, tmp_path, quiet=True)) == 2
     assert sorted(path.name for path in tmp_path.glob("fatigue*.csv")) == [
         "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv", "fatigue_section.csv"]
 

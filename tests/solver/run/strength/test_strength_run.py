@@ -40,10 +40,21 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """With error bars."""
+    """With error bars; said is what `run` says of the tips, and what it means for roots."""
     folder = tmp_path_factory.mktemp("strength")
-    assert run_strength(scene(), folder, quiet=True) == []
+    plain, bears = run_strength(scene(), folder, quiet=True)
+    assert plain.startswith("No tip relief: tip edges may bear")
+    assert bears.startswith("Tip-edge contact at ") and " of 12 positions, on teeth with up to " in bears
+    assert "stresses at the roots rest on contact of edges" in bears
     return folder
+
+
+def test_relieved_tips_that_do_not_bear_are_no_warning(tmp_path: Path) -> None:
+    """Nothing is said of gears with tip relief whose edges do not bear."""
+    relieved = "pinion.tip_relief_um=60", "wheel.tip_relief_um=60", "output.error_bars=false", "output.pictures=false"
+    assert not any("Tip-edge contact" in each or "No tip" in each for each in run_strength(
+        scene("sweep.positions=4", *relieved), tmp_path, quiet=True
+    ))
 
 
 def test_plot_draws_root_stress_again(out: Path, tmp_path: Path) -> None:
@@ -127,7 +138,7 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
         raise MeshError("too coarse")
 
     monkeypatch.setattr(strength_run, "scene_root_meshes", lambda _: (RootMesh(), refuse))
-    (said,) = run_strength(scene(), tmp_path, quiet=True)
+    *_, said = run_strength(scene(), tmp_path, quiet=True)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
 
 

@@ -43,7 +43,7 @@ def flank(peaks: list[float], shear: Rows, tension: Floats) -> FlankFatigue:
     surface = np.zeros((n, 4))
     surface[:, 0] = peaks
     edge = np.zeros((n, 4))
-    edge[:, 0] = edge[:, 1] = tension
+    edge[:, :2] = tension[:, None]
     values = {CONTACT_PRESSURE: surface, ORTHOGONAL_SHEAR: np.array(shear).reshape(n, 4), TENSION: edge}
     return FlankFatigue(loads, DEPTHS, values)
 
@@ -148,6 +148,24 @@ def test_no_life_by_the_coefficients_alone() -> None:
             assert len(rows) == 4
             lives = np.array([(row.life_ratio, row.life_ratio_at_points) for row in rows])
             assert (np.isfinite(lives) == known).all()
+
+
+@pytest.mark.parametrize("frictions", [(0.0, 0.2), (0.2, 0.0), (0.1, 0.2)])
+def test_change_rests_on_the_histories_of_both_coefficients(frictions: tuple[float, float]) -> None:
+    """Problem: shear is largest at the pitch point, where friction reverses unless there is none, which may be at
+    either coefficient. Exact: the change at that point is flagged in each order; the value of the one without friction
+    is not, and contact pressure, which has no history, never."""
+    shear: Rows = [[100, 120, 400, 410], [90, 300, 450, 500], [80, 96, 400, 80]]
+    own = flank([900.0, 1000.0, 800.0], shear, 100.0 * np.ones(3))
+    found = [FrictionFatigue(μ, (own, own), math.nan) for μ in frictions]
+    rows = {
+        (row.friction, row.criterion): row for row in fatigue_rows(PAIR, found)
+        if row.gear == "pinion" and row.place in (BELOW, SURFACE) and row.criterion != TENSION.name
+    }
+    below, pressure = rows[frictions[1], ORTHOGONAL_SHEAR.name], rows[frictions[1], "contact_pressure"]
+    assert (below.point_roll_distance_mm, below.near_friction_reversal) == (0.0, frictions[1] > 0.0)
+    assert below.point_near_friction_reversal
+    assert not pressure.near_friction_reversal and not pressure.point_near_friction_reversal
 
 
 def test_life_without_what_there_was(recwarn: pytest.WarningsRecorder) -> None:

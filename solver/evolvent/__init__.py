@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from evolvent.contact.transient.solver import CoarseTimeStepWarning as CoarseTimeStepWarning
     from evolvent.contact.transient.solver import Moment as Moment
     from evolvent.contact.transient.solver import Transient as Transient
+    from evolvent.fem.backend.dolfinx_mesh import mesh_from_dolfinx as mesh_from_dolfinx
     from evolvent.fem.body import Body as Body
     from evolvent.fem.body import BodyForce as BodyForce
     from evolvent.fem.body import Fixed as Fixed

@@ -26,7 +26,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
     "contact.newton": ("meshes", "fem.backend", "contact.nitsche"),
     "contact.two_level": ("meshes", "meshes.mesh", "fem", "fem.condensation", "contact.nitsche"),
-    "contact.problem": ("meshes", "fem", "fem.condensation", "contact.nitsche"),
+    "contact.problem": ("meshes", "fem", "fem.backend", "fem.condensation", "contact.nitsche"),
     "contact.step": (
         "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
     ),

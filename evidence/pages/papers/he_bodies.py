@@ -1,6 +1,7 @@
 """`python -m evidence.pages.papers.he_bodies --out DIR`: He's pair on rigid and elastic bodies beside its modes.
 
-For docs/dynamics.md: the peak-to-peak transmission error of the torsional model on both kinds of gear bodies, at speeds
+For docs/dynamics.md: the peak-to-peak transmission error and the largest mesh force over the static one of the
+torsional model on both kinds of gear bodies, at speeds
 up to and beyond that at which the third mesh harmonic excites the bodies themselves, against transient contact with the
 natural modes of both gears; with a backlash and a damping with which flanks do not part. Runs that an earlier call has
 ended are read again. `python -m evidence.pages` then writes the page.
@@ -9,6 +10,7 @@ ended are read again. `python -m evidence.pages` then writes the page.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Mapping
 from itertools import product
 from pathlib import Path
 
@@ -52,12 +54,14 @@ def figures(runs: Runs) -> Named:
             yield "third_harmonic_rpm", 60.0 * own / (3.0 * teeth)
         for speed in speeds:
             yield f"{bodies}_{speed}_um", float(np.ptp(swept.motion(speed, "up")["transmission_error_um"]))
+            yield f"{bodies}_{speed}_force", swept.at("dynamic_factor", speed)
     for positions, speeds in STEPS.items():
         words = _words("transient", f"transient.speeds_rpm={list(speeds)}", f"sweep.positions={positions}",
                        "transient.mesh_periods=300", "transient.steady_change=0.001")
         folder, _ = runs.ended(f"modes_{positions}", "transient.json", *words)
         for speed, fact in zip(speeds, json.loads((folder / "transient.json").read_text(encoding="utf-8"))):
             yield f"modes_{speed}_um", fact["peak_to_peak_um"]
+            yield f"modes_{speed}_force", fact["dynamic_factor"]
             yield f"modes_{speed}_apart_percent", 100.0 * fact["separated"]
             yield f"modes_{speed}_steady", float(fact["steady"])
 
@@ -68,32 +72,50 @@ def _words(command: str, *settings: str) -> tuple[str, ...]:
 
 
 def bodies_table(docs: Path) -> str:
-    """Peak-to-peak transmission error at each speed, and how far both models are from the transient."""
+    """Peak-to-peak transmission error and largest mesh force at each speed, and how far both models are from the
+    transient."""
     f = kept.kept(docs / KEPT, COMMAND)
 
-    def cells(speed: int) -> tuple[str, ...]:
-        wanted = f[f"modes_{speed}_um"]
-        found = [f[f"{bodies}_{speed}_um"] for bodies in BODIES]
-        return f"{speed}", *(f"{um:.2f} ({100.0 * (um / wanted - 1.0):+.1f} %)" for um in found), f"{wanted:.2f}"
+    def cells(speed: int) -> list[str]:
+        found = [f"{speed}"]
+        for what in ("um", "force"):
+            for bodies in BODIES:
+                found.append(f"{f[f'{bodies}_{speed}_{what}']:.2f} ({_off(f, bodies, speed, what):+.1f} %)")
+            found.append(f"{f[f'modes_{speed}_{what}']:.2f}")
+        return found
 
-    head = "speed [r/min]", *(f"{bodies} bodies [µm]" for bodies in BODIES), "transient with modes of both bodies [µm]"
+    names = *(f"{bodies} bodies" for bodies in BODIES), "modes of both bodies"
+    head = "speed [r/min]", *(f"{name} [µm]" for name in names), *(f"force, {name}" for name in names)
     return markdown(head, [cells(speed) for speed in SPEEDS], range(len(head)))
 
 
 def bodies_limit(docs: Path) -> str:
     """Largest differences of elastic bodies from the transient, near the bodies' own vibration and elsewhere."""
     f = kept.kept(docs / KEPT, COMMAND)
-    third = f["third_harmonic_rpm"]
-    off = {speed: 100.0 * (f[f"elastic_{speed}_um"] / f[f"modes_{speed}_um"] - 1.0) for speed in SPEEDS}
-    rigid = max(abs(100.0 * (f[f"rigid_{speed}_um"] / f[f"modes_{speed}_um"] - 1.0)) for speed in SPEEDS)
-    near = {speed: each for speed, each in off.items() if abs(speed / third - 1.0) < NEAR}
-    worst = min(near, key=lambda speed: near[speed])
-    elsewhere = max(abs(each) for speed, each in off.items() if speed != worst)
+    third, (low, high) = f["third_harmonic_rpm"], NEAR
+    near = [speed for speed in SPEEDS if low < speed / third < high]
+
+    def largest(bodies: str, what: str, speeds: Iterable[int]) -> float:
+        return max(abs(_off(f, bodies, speed, what)) for speed in speeds)
+
+    def at(speed: int) -> str:
+        both = (f"{_off(f, 'elastic', speed, what):+.1f} %" for what in ("um", "force"))
+        return f"at {speed} r/min, {speed / third:.2f} times that, by {' and '.join(both)}"
+
+    others = [speed for speed in SPEEDS if speed not in near]
+    elastic, rigid = ([largest(bodies, what, speeds) for what in ("um", "force")]
+                      for bodies, speeds in (("elastic", others), ("rigid", SPEEDS)))
     return (
         f"The bodies' own vibration on the mesh, {1e-3 * f['body_frequency_Hz']:.1f} kHz, is met by the third mesh "
-        f"harmonic at {third:.0f} r/min: at {worst} r/min the peak-to-peak value on elastic bodies is off by "
-        f"{near[worst]:+.1f} %, at the other speeds by up to {elsewhere:.1f} %; on rigid ones by up to {rigid:.0f} %."
+        f"harmonic at {third:.0f} r/min. Between {low:g} and {high:g} times that speed peak-to-peak value and largest "
+        f"force on elastic bodies are off {', '.join(map(at, near))}; at the other speeds by up to "
+        f"{elastic[0]:.1f} and {elastic[1]:.1f} %; on rigid ones by up to {rigid[0]:.0f} and {rigid[1]:.0f} %."
     )
+
+
+def _off(figures: Mapping[str, float], bodies: str, speed: int, what: str) -> float:
+    """How far a model is from the transient [%]. what: um or force."""
+    return 100.0 * (figures[f"{bodies}_{speed}_{what}"] / figures[f"modes_{speed}_{what}"] - 1.0)
 
 
 if __name__ == "__main__":

@@ -85,6 +85,10 @@ class Vibration:
         """A column running up, or down."""
         return np.array([float(row[name]) for row in self.rows if row["way"] == way])
 
+    def at(self, name: str, speed: float) -> float:
+        """A column running up at one of the speeds [r/min]."""
+        return float(self.over_speed(name, "up")[self.over_speed("speed_rpm", "up") == speed][0])
+
     def largest(self, name: str) -> float:
         """Of a column, both ways."""
         return max(float(self.over_speed(name, way).max()) for way in ("up", "down"))

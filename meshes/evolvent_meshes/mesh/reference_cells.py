@@ -92,6 +92,13 @@ def facet_nodes(shape: str, order: int) -> Ints:
     return sub_cell_nodes(shape, FACET_SHAPE[shape], corners, order)
 
 
+@lru_cache
+def mirrored_nodes(shape: str, order: int) -> Ints:
+    """perm (n,): cells[:, perm] are the same cells with the opposite sign of the Jacobian."""
+    index = _position_index(shape, order)
+    return np.array([index[(y, x, *z)] for x, y, *z in node_positions(shape, order).tolist()], dtype=np.int64)
+
+
 def shape_gradients(shape: str, order: int, where: Floats) -> Floats:
     """Gradients (p, k, d) of the k Lagrange shape functions at reference points `where` (p, d).
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from evolvent.check.planned_cost import SWEEPS, shown_time, speeds_time
 from evolvent.dynamics.of_scene import drive_settings, refusals
 from evolvent.dynamics.pair_model import lacking_room
-from evolvent.gears.problem.gear_inertia import equivalent_mass
+from evolvent.gears.problem.gear_inertia import added_inertia, equivalent_mass, polar_moment
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
 from evolvent.scene.backlash import unnamed_backlash
 from evolvent.scene.gear_problem import gear_problem
@@ -24,6 +24,10 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
     problem, count = gear_problem(scene), scene.sweep.positions
     settings = drive_settings(problem.pair, section)
     mass = equivalent_mass(problem.pair, settings.inertias)
+    added = [
+        added_inertia(moment, polar_moment(gear, section.density_kg_m3))
+        for moment, gear in zip(settings.inertias, problem.pair.gears)
+    ]
     force = problem.torque / problem.pair.gears[problem.torque_on].base_radius
     moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
     iso = method_b(problem.pair, mass, force, Accuracy(), moduli)
@@ -32,6 +36,7 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
     named = unnamed_backlash(problem.pair, section.backlash_um) is None
     return [
         ("moment of inertia", "I", "kg·m²", tuple(f"{1e-3 * each:.4g}" for each in settings.inertias)),
+        ("  at the bore, beyond the body's", "", "kg·m²", tuple(f"{1e-3 * each:.3g}" for each in added)),
         ("equivalent mass along the line of action", "m_e", "kg", (f"{1e3 * mass:.4g}",)),
         ("gear bodies", "", "", (section.bodies,)),
         ("damping ratio", "ζ", "", (f"{settings.damping_ratio:g}",)),

@@ -128,10 +128,12 @@ def _dynamics(call: Call) -> Finished:
     The excitation by its mesh, then steady states, jumps, spectra and the motions of a pair that runs up and down, with
     the dynamic factor of ISO 6336-1 beside, as the section [dynamics] of the scene says.
     """
+    from evolvent.run.dynamics.summary_lines import summary_lines
     from evolvent.run.dynamics.vibration import run_dynamics
 
     call.require_room(unworn(call.scene))
-    return Finished(run_dynamics(call.scene, call.out, call.resume, call.overwrite, call.quiet))
+    warnings = run_dynamics(call.scene, call.out, call.resume, call.overwrite, call.quiet)
+    return Finished(warnings, lambda: summary_lines(call.out))
 
 
 def _transient(call: Call) -> Finished:

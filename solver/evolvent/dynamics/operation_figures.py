@@ -15,12 +15,12 @@ UM = 1e3  # µm per mm
 
 @dataclass(frozen=True)
 class OperationFigures:
-    """A pair at its operating speed: operation.json."""
+    """A pair at its operating speed, in numbers."""
 
     speed_rpm: float
     """Speed of the pinion."""
     natural_speed_rpm: float
-    """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness."""
+    """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness in motion."""
     mean_stiffness_N_per_um: float
     """Mesh stiffness of the whole face under the static torque, mean over the pitch, with the series compliance: the
     secant one where dynamics.mesh is secant, else the tangent one."""
@@ -66,6 +66,21 @@ class OperationFigures:
             largest_force_N=found.largest_force, heaviest_torque_share=operation.heaviest_torque_share,
             smallest_force_N=found.smallest_force, separated_share=found.apart, lifted_share=operation.lifted,
             repeats=operation.repeats,
+        )
+
+
+@dataclass(frozen=True)
+class OperationFacts(OperationFigures):
+    """operation.json: a pair at its operating speed, and its gear bodies."""
+
+    bodies: str
+    """elastic or rigid gear bodies, as in dynamics.json."""
+
+    @staticmethod
+    def of(operation: Operation) -> OperationFacts:
+        """Facts of a pair's operation."""
+        return OperationFacts(
+            **asdict(OperationFigures.of(operation)), bodies=operation.drive.settings.bodies_named
         )
 
 

@@ -14,7 +14,7 @@ from evolvent.dynamics.one_degree import OneDegree, one_degree
 from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side, with_chords
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent.dynamics.small_system import GearShapes, pair_system
-from evolvent.gears.problem.gear_inertia import equivalent_mass
+from evolvent.gears.problem.gear_inertia import added_inertia, equivalent_mass
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent_meshes.arrays import Floats
@@ -55,12 +55,28 @@ class DriveSettings:
     ground_damping_ratio: float = 0.0
     """Damping ratio of the shafts against the ground, over the critical damping at the mean stiffness."""
     series_stiffness: float = math.inf
-    """Stiffness of shafts and bearings along the line of action [N/mm]."""
+    """Stiffness of what gives way in line with the mesh, along the line of action, without inertia [N/mm]."""
     mesh: MeshModel = "force_surface"
     """Model of the mesh force."""
     bodies: tuple[GearShapes, GearShapes] | None = None
     """Static shapes of the bodies of pinion and wheel, on their whole width; None: the bodies are rigid, with all
     inertia at the bores."""
+
+    @property
+    def bodies_named(self) -> Literal["elastic", "rigid"]:
+        """As `dynamics.bodies` of a scene."""
+        return "rigid" if self.bodies is None else "elastic"
+
+    @property
+    def added_inertias(self) -> tuple[float, float] | None:
+        """Moments of inertia [t·mm²] beyond those of both bodies, at the bores; 0 where they are equal but for
+        rounding. None for rigid bodies."""
+        if self.bodies is None:
+            return None
+        pinion, wheel = (
+            added_inertia(moment, float(gear.mass[0, 0])) for moment, gear in zip(self.inertias, self.bodies)
+        )
+        return pinion, wheel
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +103,8 @@ class Drive:
 
     @property
     def natural_speed(self) -> float:
-        """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness [r/min]."""
+        """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness in motion
+        [r/min]."""
         return self._speed(self.moving_stiffness / self.model.mass)
 
     def body_speed(self, harmonic: int) -> float:

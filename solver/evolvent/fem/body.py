@@ -45,9 +45,9 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Body:
-    """A deformable body.
+    """A deformable body. body["top"] is its facet group "top" as a side of a contact; a body equals itself only.
 
     mesh: from `read_msh`, from `evolvent_meshes.shapes`, or from arrays.
     material: isotropic, linear elastic.
@@ -90,6 +90,12 @@ class Body:
         self._check_groups()
         self._check_dimension()
         prescribed_displacements(self)
+
+    def __getitem__(self, group: str) -> tuple[Body, str]:
+        """The side of a contact on this facet group. Raises MeshError for a group that cannot be in contact."""
+        text(f"{self.name}, side", group, 'name a facet group, as in body["top"]')
+        boundary_group(self.mesh, group, self.name)
+        return self, group
 
     def _check_groups(self) -> None:
         for support in self.supports:

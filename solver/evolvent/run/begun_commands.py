@@ -28,7 +28,7 @@ class BegunCommand:
         return next((path.relative_to(out).as_posix() for path in there), "")
 
     def remedy(self, out: Path) -> str:
-        """What to call for the pictures of the folder."""
+        """Command to call for the pictures of the folder."""
         if self.names == ("study",):
             return (
                 f"`evolvent study STUDY.toml --out {out}` draws its pictures again, `evolvent plot "

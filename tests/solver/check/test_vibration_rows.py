@@ -24,6 +24,10 @@ def test_figures_of_hes_pair() -> None:
     """Exact: m_e = I/(2 r_b²) of equal gears; ISO's natural speed 4566 r/min."""
     found = told()
     assert found["moment of inertia"] == ("0.00765", "0.00765")
+    assert [float(each) for each in found["at the bore, beyond the body's"]] == pytest.approx([2.55e-4] * 2, rel=0.01)
+    own = load_scene(ROOT / "demos/he2022.toml", ["dynamics.backlash_um=50"])
+    assert own.dynamics is not None
+    assert ("  at the bore, beyond the body's", "", "kg·m²", ("0", "0")) in vibration_lines(own, own.dynamics)
     assert float(found["equivalent mass along the line of action"][0]) == pytest.approx(0.7701, abs=1e-4)
     assert found["natural speed by c_γα of ISO 6336-1"] == ("4566",)
     assert found["positions × torques of the excitation"] == ("40 × 10",)

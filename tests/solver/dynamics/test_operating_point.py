@@ -10,11 +10,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evolvent.dynamics.figures.operation import operation_figure
 from evolvent.dynamics.operating_point import LEAST_FORCE, OperatingPoint, Operation
-from evolvent.dynamics.operation_figures import OperationFigures, operation_warnings
+from evolvent.dynamics.operation_figures import OperationFacts, OperationFigures, operation_warnings
 from evolvent.dynamics.oscillator.response import response
 from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
 from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.dynamics.results.histories import Motion, history_rows
+from evolvent.dynamics.results.tables import excitation_rows
 from evolvent.dynamics.under_mesh_force import UnderMeshForce
 from evolvent.gears.gear_model import GearModel
 from evolvent.scene.gear_problem import gear_problem
@@ -116,6 +119,17 @@ def test_forces_beyond_the_heaviest_torque_are_told() -> None:
     assert operation_warnings([OperationFigures.of(operation(3000.0))]) == []
     stiff = replace(POINT, settings=replace(POINT.settings, mesh="tangent")).on(model(), (None, None), MPI.COMM_SELF)
     assert np.isnan(stiff.heaviest_torque_share)
+
+
+def test_picture_names_the_gear_bodies() -> None:
+    """Below the title, as operation.json has them: elastic and rigid ones have other natural speeds."""
+    found = operation(4000.0)
+    motion = list(history_rows([Motion(found.speed, "up", found.period, found.repeats, found.paths)]))
+    rows = excitation_rows(found.excitation, model().pair.pinion.base_radius)
+    assert OperationFacts.of(found).bodies == "rigid"
+    for bodies in ("elastic", "rigid"):
+        figure = operation_figure(replace(OperationFacts.of(found), bodies=bodies), motion, rows, None)
+        assert f" r/min, {bodies} gear bodies." in " ".join(text.get_text() for text in figure.texts)
 
 
 def test_stresses_of_several_meshes_are_those_of_the_largest_force() -> None:

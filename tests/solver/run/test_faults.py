@@ -1,11 +1,15 @@
 """`evolvent run` struck by faults: killed at random times again and again, a rank killed, no folder, no room, a NaN.
 
-What is damaged at a chosen moment is in test_archive.py. `make stress` kills 20 times; here it is fewer.
+Disks that are full at each write in turn are made by full_disks.py. What is damaged at a chosen moment is in
+test_archive.py. `make stress` kills 20 times; here it is fewer.
 """
 
 from __future__ import annotations
 
+import json
 import os
+import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -13,6 +17,8 @@ import pytest
 from evidence.robustness.faults import Struck, arguments, differs, run, struck_again_and_again
 from evolvent.results.archive.store import read_arrays
 from tests.support.running.processes import BROKEN_RUN, Run
+
+STEP, LAST = 20, 500  # kB; the run takes 460, a position and the flanks in contact no less than a step
 
 
 @pytest.fixture(scope="module")
@@ -82,3 +88,34 @@ def test_nan_compliance_is_not_converged(at: int, whole: Path, run_script: Run, 
         assert read_arrays(out / "results" / "state.npz")["complete"] == at - 1
     assert run(out, "--resume").returncode == 0
     assert differs(out, whole) < 1e-7
+
+
+@pytest.mark.evidence
+@pytest.mark.slow
+@pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small file system wants root")
+def test_full_disk_at_every_write_is_resumed(run_script: Run, tmp_path: Path) -> None:
+    """From a disk without room for the scene to one with room for all: status 1 and one line with file, size, reason
+    and remedy; no half-written file, foreign files as they were, and once there is room --resume completes the
+    run. The list of files, surfaces, results and fields are among what lacks room."""
+    if subprocess.run(["mount", "-t", "tmpfs", "tmpfs", str(tmp_path)], capture_output=True, check=False).returncode:
+        pytest.skip("mounting is not allowed here")
+    subprocess.run(["umount", str(tmp_path)], check=True)
+    settings = ("output.fields=true", "sweep.positions=2", "contact.friction=[0.0, 0.1, 0.2]", "output.error_bars=true")
+    sizes = str(STEP), str(LAST)
+    done = run_script("tests/support/running/full_disks.py", str(tmp_path), *sizes, *settings, timeout=300.0)
+    assert done.returncode == 0, done.stderr
+    disks = [json.loads(line) for line in done.stdout.splitlines()]
+    assert len(disks) == LAST // STEP
+    lacking = set()
+    for disk in disks:
+        assert disk["kept"] and disk["still"] and not disk["broken"] and not disk["whole"], disk
+        told = [line for line in disk["resumed stderr"].splitlines() if not line.startswith("evolvent: warning: ")]
+        assert (disk["resumed"], told) == (0, []), disk
+        if disk["status"]:
+            line = r"evolvent: (\S+): wanted to write \S+ MB, found No space left on device; make room .*--resume.*"
+            found = re.findall(rf"^{line}$", disk["stderr"], re.MULTILINE)
+            assert disk["status"] == 1 and len(found) == 1, disk
+            lacking.add(re.sub(r"[\d_]*\..*", "", Path(found[0]).name))
+    assert disks[-1]["status"] == 0
+    assert lacking >= {"gears", "position", "flanks"}
+    assert any(disk["status"] == 1 and disk["complete"] for disk in disks), "fields come after the tables"

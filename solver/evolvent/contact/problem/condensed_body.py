@@ -20,6 +20,7 @@ import scipy.sparse as sp
 from evolvent.contact.nitsche.flux_recovery import NitscheTraction, nitsche_traction, trace_functionals
 from evolvent.contact.problem.definition import Nitsche, Problem
 from evolvent.contact.problem.pressure_carrier import pressure_sides
+from evolvent.fem.backend.dolfinx_mesh import NodalSpace, nodal_space
 from evolvent.fem.body import Assembled, Body, assemble
 from evolvent.fem.condensation.schur_complement import Factor, NotPositiveDefinite, compliance, compliance_by_columns
 from evolvent.fem.surface import Surface, check_smooth, surface_of
@@ -57,6 +58,11 @@ class CondensedBody:
     def factor(self) -> Factor:
         """The factored stiffness, for loads and fields."""
         return Factor(self.stiffness)
+
+    @cached_property
+    def nodal_space(self) -> NodalSpace:
+        """dolfinx' space of the displacements of the body's nodes."""
+        return nodal_space(self.assembled.body.mesh)
 
     @cached_property
     def load_response(self) -> Floats:

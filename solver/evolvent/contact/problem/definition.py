@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
 from evolvent.contact.nitsche.flux_recovery import SAFETY
+from evolvent.contact.problem.body_names import body_number, freedom_pairs, is_body
 from evolvent.fem.body import Body, Freedom
 from evolvent.fem.surface import boundary_group
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import InputError
-from evolvent_meshes.input_checks import Words, array, is_index, members, number, refuse
+from evolvent_meshes.input_checks import Words, array, members, number, refuse
 
 Side = tuple[int, str]
 """One side of a contact: index of the body in the problem, name of a facet group."""
+BodySide = tuple[Body, str]
+"""A side with the body itself, as body["top"] gives it."""
 ORTHONORMAL = 1e-9  # largest entry of |RᵀR − I| of a rotation
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Contact:
-    """Two surfaces that may touch: (body index, facet group) each.
+    """Two surfaces that may touch: body["top"], or (body index, facet group), each.
 
     first: the surface that carries the pressure, unless its body is more than ten times as stiff as the other one
         (pressure_carrier.py); take the coarser one.
@@ -29,6 +34,8 @@ class Contact:
     friction: Coulomb's coefficient of friction μ.
     reach: the largest gap [mm] at which a point can come into contact within a step; by default a tenth of the first
         surface's extent.
+
+    A problem's contacts have indices in place of bodies.
     Raises InputError.
 
     >>> contact = Contact((0, "arc"), (1, "top"), friction=0.15)
@@ -41,19 +48,35 @@ class Contact:
     friction: float = 0.0
     reach: float | None = None
 
-    def __post_init__(self) -> None:
-        for name, side in (("first", self.first), ("second", self.second)):
+    def __init__(
+        self, first: Side | BodySide, second: Side | BodySide, friction: float = 0.0, reach: float | None = None
+    ) -> None:
+        for name, side in (("first", first), ("second", second)):
             pair = isinstance(side, tuple | list) and len(side) == 2
-            if not (pair and is_index(side[0]) and isinstance(side[1], str)):
-                refuse(f"contact, {name} side", "a body's index and a facet group", side, 'write (0, "top")')
-            object.__setattr__(self, name, (int(side[0]), side[1]))
+            if not (pair and is_body(side[0]) and isinstance(side[1], str)):
+                wanted = "a body's index and a facet group, or a body's side"
+                refuse(f"contact, {name} side", wanted, side, 'write block["top"], or (0, "top")')
+            object.__setattr__(self, name, tuple(side))
+        object.__setattr__(self, "friction", friction)
+        object.__setattr__(self, "reach", reach)
+        self._check()
+
+    def _check(self) -> None:
         if self.first == self.second:
-            refuse("contact", "two different surfaces", Words(f"{self.first} on both sides"), "name the other surface")
+            refuse("contact", "two different surfaces", Words(f"{self.first[1]!r} twice"), "name the other surface")
         remedy = "give Coulomb's μ, 0 without friction"
         number("contact, friction", self.friction, "a finite number >= 0", remedy, lambda μ: μ >= 0.0)
         if self.reach is not None:
             remedy = "leave it out for a tenth of the first surface's extent"
             number("contact, reach", self.reach, "a finite number > 0 [mm]", remedy, lambda reach: reach > 0.0)
+
+    def numbered(self, bodies: Sequence[Body]) -> Contact:
+        """The contact with indices in place of bodies. Raises InputError for a body that is not among `bodies`."""
+        first, second = (
+            (body_number(bodies, body, f"contact, {name} side"), group)
+            for name, (body, group) in (("first", self.first), ("second", self.second))
+        )
+        return replace(self, first=first, second=second)
 
 
 @dataclass(frozen=True)
@@ -89,7 +112,9 @@ class Problem:
     >>> from evolvent_meshes.shapes.blocks import rectangle
     >>> base = Body(rectangle(2.0, 1.0, 4, 2), supports=(Fixed("bottom"),), name="base")
     >>> punch = Body(rectangle(1.0, 1.0, 3, 3, origin=(0.5, 1.0)), rigid=Rigid("top", (Freedom("y", load=-100.0),)))
-    >>> problem = Problem((base, punch), (Contact((0, "top"), (1, "bottom")),))
+    >>> problem = Problem((base, punch), (Contact(base["top"], punch["bottom"]),))
+    >>> problem.contacts[0].first
+    (0, 'top')
     """
 
     bodies: tuple[Body, ...]
@@ -99,7 +124,8 @@ class Problem:
     def __post_init__(self) -> None:
         object.__setattr__(self, "bodies", members("problem, bodies", self.bodies, (Body,), "(punch, block)"))
         example = '(Contact((0, "face"), (1, "top")),)'
-        object.__setattr__(self, "contacts", members("problem, contacts", self.contacts, (Contact,), example))
+        contacts = members("problem, contacts", self.contacts, (Contact,), example)
+        object.__setattr__(self, "contacts", tuple(contact.numbered(self.bodies) for contact in contacts))
         if not isinstance(self.nitsche, Nitsche):
             refuse("problem, nitsche", "a Nitsche", self.nitsche, "write Nitsche(theta=-1.0), or leave it out")
         for contact in self.contacts:
@@ -175,45 +201,46 @@ class Placement:
         return Placement(np.eye(d), np.zeros(d))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Step:
     """One load step of a sweep.
 
     load: factor on all loads, prescribed displacements and motions.
     placements: rigid placements of the bodies, one each; None: all as meshed.
-    freedoms: (body index, Freedom) pairs that replace, in this step, the body's freedom of the same direction. Their
-        values are not multiplied by `load`, so that a tangential load can follow a normal one.
+    freedoms: {body: Freedom or several} or pairs of a body and a Freedom, a body itself or its index, that replace, in
+        this step, the body's freedom of the same direction. Their values are not multiplied by `load`, so that a
+        tangential load can follow a normal one.
+
+    The step of a solution has pairs with indices.
     Raises InputError.
 
     >>> from evolvent import Freedom
-    >>> press, drag = Step(), Step(freedoms=((0, Freedom("x", displacement=0.01)),))
-    >>> drag.load
-    1.0
+    >>> press, drag = Step(), Step(freedoms={0: Freedom("x", displacement=0.01)})
+    >>> drag.load, drag.freedoms[0][0]
+    (1.0, 0)
     """
 
     load: float = 1.0
     placements: tuple[Placement, ...] | None = None
     freedoms: tuple[tuple[int, Freedom], ...] = ()
 
-    def __post_init__(self) -> None:
-        number("step, load", self.load, "a finite factor", "give a number, 1 for the whole load")
-        if self.placements is not None:
+    def __init__(
+        self,
+        load: float = 1.0,
+        placements: Iterable[Placement] | None = None,
+        freedoms: Iterable[tuple[int | Body, Freedom]] | Mapping[Any, Freedom | Iterable[Freedom]] = (),
+    ) -> None:
+        number("step, load", load, "a finite factor", "give a number, 1 for the whole load")
+        if placements is not None:
             example = "(Placement.at_rest(2), Placement(R, x)), one a body"
-            placements = members("step, placements", self.placements, (Placement,), example)
-            object.__setattr__(self, "placements", placements)
-        example = '((0, Freedom("x", displacement=0.1)),)'
-        pairs = members("step, freedoms", self.freedoms, (tuple, list), example)
-        for pair in pairs:
-            if not (len(pair) == 2 and is_index(pair[0]) and isinstance(pair[1], Freedom)):
-                refuse("step, freedoms", "pairs of a body's index and a Freedom", pair, f"write {example}")
-        names = [(int(index), freedom.direction) for index, freedom in pairs]
-        if len(set(names)) < len(names):
-            refuse("step, freedoms", "each freedom of a body once", names, "leave out one of the two")
-        object.__setattr__(self, "freedoms", tuple((int(index), freedom) for index, freedom in pairs))
+            placements = members("step, placements", placements, (Placement,), example)
+        object.__setattr__(self, "load", load)
+        object.__setattr__(self, "placements", placements)
+        object.__setattr__(self, "freedoms", freedom_pairs(freedoms))
 
 
-def check_step(problem: Problem, step: Step) -> None:
-    """Raises InputError for a step that does not fit the problem."""
+def numbered_step(problem: Problem, step: Step) -> Step:
+    """The step with indices in place of bodies. Raises InputError for a step that does not fit the problem."""
     if not isinstance(step, Step):
         refuse("step", "a Step", step, "write Step(0.5), or a list of steps for a sweep")
     count, d = len(problem.bodies), problem.bodies[0].mesh.dimension
@@ -223,6 +250,8 @@ def check_step(problem: Problem, step: Step) -> None:
         refuse("step, placements", f"one for each of the {count} bodies", given, remedy)
     if any(len(placement.translation) != d for placement in step.placements or ()):
         refuse("step, placements", f"rotations ({d}, {d})", step.placements, f"the bodies are {d}D")
+    freedoms = ((body_number(problem.bodies, body, "step, freedoms"), each) for body, each in step.freedoms)
+    step = replace(step, freedoms=tuple(freedoms))
     for index, freedom in step.freedoms:
         if not 0 <= index < count:
             raise InputError(f"step, freedoms: wanted body indices below {count}, found {index}; count them from 0")
@@ -233,3 +262,4 @@ def check_step(problem: Problem, step: Step) -> None:
                 f"step: wanted one of the freedoms {names} of {body.name!r} (body {index}), found "
                 f"{freedom.direction!r}; declare it in the body's Rigid first"
             )
+    return step

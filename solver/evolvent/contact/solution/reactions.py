@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.contact.step.step_solution import Solution
+from evolvent.fem.body import Body
 from evolvent.fem.boundary import AXES
 from evolvent.fem.rigid_modes import rigid_modes
 from evolvent_meshes.arrays import Floats, Ints
@@ -29,10 +30,11 @@ class Reaction:
     moment: Floats
 
 
-def reactions(solution: Solution, body: int, about: tuple[float, ...] = (0.0, 0.0, 0.0)) -> tuple[Reaction, ...]:
+def reactions(solution: Solution, body: int | Body, about: tuple[float, ...] = (0.0, 0.0, 0.0)) -> tuple[Reaction, ...]:
     """The reactions of a body: one for each support in their order, then that of its rigid coupling.
 
-    body: its index in the problem. about: the point, in the body's frame, about which moments are taken [mm].
+    body: a body of the problem, or its index.
+    about: the point, in the body's frame, about which moments are taken [mm].
 
     A node that two supports hold in the same direction counts for the first one. The coupling's force includes the
     loads of its freedoms. All reactions, the loads of the body and its contact forces add up to zero, to solver
@@ -43,7 +45,7 @@ def reactions(solution: Solution, body: int, about: tuple[float, ...] = (0.0, 0.
     wanted = "a point of two or three finite coordinates [mm]"
     centre = np.array(vector("reactions, about", about, (2, 3) if d == 2 else (3,), wanted, "write (x, y, z)"))[:d]
     modes = rigid_modes(definition.mesh.points[:, :d] - centre)
-    forces = _holding_forces(solution, body)
+    forces = _holding_forces(solution, solution.number(body))
     result = []
     for support in definition.supports:
         nodes = np.unique(definition.mesh.facets[support.group])

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 
 from evolvent.contact.problem.condensed_body import CondensedBody, condense_bodies
-from evolvent.contact.problem.definition import Problem, Side, Step, check_step
+from evolvent.contact.problem.definition import Problem, Side, Step, numbered_step
 from evolvent.contact.problem.poisson_limit import warn_if_incompressible
 from evolvent.contact.step.contact_width import warn_if_coarse
 from evolvent.contact.step.displaced_search import solve_with_displaced_search
@@ -51,7 +51,7 @@ class Sweep:
 
         Raises InputError, NotConverged, SearchError, PairingNotSettled, SmallStrainExceeded, NotPositiveDefinite.
         """
-        check_step(self.problem, step)
+        step = numbered_step(self.problem, step)
 
         def system_of(problem: Problem, search_at: SearchPositions) -> StepSystem:
             return StepSystem(problem, self.condensed, step, search_at)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
+from evolvent.contact.problem.body_names import body_number, is_body
 from evolvent.contact.problem.body_response import BodyResponse
 from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Step
 from evolvent.contact.step.contact_result import ContactResult
 from evolvent.contact.step.paired_surfaces import SurfacePositions
+from evolvent.fem.body import Body
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.input_checks import is_index, refuse
+from evolvent_meshes.input_checks import refuse
 
 
 @dataclass(frozen=True)
@@ -38,16 +41,31 @@ class Solution:
     responses: tuple[BodyResponse, ...]
     searches: int = 1
 
-    def body(self, index: int) -> CondensedBody:
-        """The condensed body with this index. Raises InputError where there is none."""
-        if not (is_index(index) and 0 <= index < len(self.condensed)):
-            refuse("solution", f"a body index below {len(self.condensed)}", index, "bodies are counted from 0")
-        return self.condensed[index]
+    def number(self, body: int | Body) -> int:
+        """Index of a body of the problem; an index stays as it is. Raises InputError where there is no such body."""
+        count, known = len(self.condensed), [each.assembled.body for each in self.condensed]
+        index = body_number(known, body, "solution") if is_body(body) else -1
+        if not 0 <= index < count:
+            refuse("solution", f"a body index below {count}", body, "bodies are counted from 0")
+        return index
 
-    def displacement(self, body: int) -> Floats:
+    def body(self, body: int | Body) -> CondensedBody:
+        """A body of the problem, or that with an index, condensed. Raises InputError where there is none."""
+        return self.condensed[self.number(body)]
+
+    def displacement(self, body: int | Body) -> Floats:
         """Displacement of a body's mesh nodes in its frame, rigid motion included, (N, d) [mm]. Raises InputError."""
-        self.body(body)
-        return self.responses[body].field(self.nodal_forces[body], self.motions[body])
+        index = self.number(body)
+        return self.responses[index].field(self.nodal_forces[index], self.motions[index])
+
+    def function(self, body: int | Body) -> Any:
+        """Displacement of a body as a dolfinx.fem.Function, vector Lagrange of the mesh's order [mm].
+
+        It is defined on the caller's mesh, in its numbering, if the body's mesh is from `mesh_from_dolfinx`, otherwise
+        on a dolfinx mesh of the body's own, which all solutions of a sweep share. Raises InputError, CompileError,
+        CacheError.
+        """
+        return self.body(body).nodal_space.function(self.displacement(body), "displacement")
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
 from evolvent.contact.problem.body_response import BodyResponse, StaticResponse
 from evolvent.contact.problem.condensed_body import CondensedBody
-from evolvent.contact.problem.definition import Placement, Problem, Side, Step, check_step
+from evolvent.contact.problem.definition import Placement, Problem, Side, Step, numbered_step
 from evolvent.contact.problem.pressure_carrier import pressure_sides
 from evolvent.contact.problem.rigid_motions import motions_at
 from evolvent.contact.step.bodies_compliance import BodiesCompliance
@@ -68,9 +68,9 @@ class StepSystem:
         self, problem: Problem, condensed: tuple[CondensedBody, ...], step: Step, search_at: SearchPositions = None,
         as_placed: bool = False, responses: Sequence[BodyResponse] | None = None,
     ) -> None:
-        self.problem, self.condensed, self.step = problem, condensed, step
+        self.problem, self.condensed = problem, condensed
+        self.step = step = numbered_step(problem, step)
         self.d = condensed[0].assembled.d
-        check_step(problem, step)
         self.as_placed = as_placed
         self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in condensed)
         self.sides = [pressure_sides(problem.bodies, contact) for contact in problem.contacts]

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
-from evolvent.contact.problem.definition import Step
+from evolvent.contact.problem.body_names import body_number, is_body
+from evolvent.contact.problem.definition import Problem, Step, numbered_step
+from evolvent.fem.body import Body
 from evolvent_meshes.input_checks import Words, instance, is_index, number, refuse, vector
 
 MODES = 20
@@ -95,7 +98,8 @@ class InitialState:
     """The state at time 0.
 
     step: its static equilibrium, from which the transient begins; None: undeformed as placed, nothing in contact.
-    velocities: index of a body -> velocity (d,) [mm/s] with which it moves, without turning. The others are at rest.
+    velocities: a body or its index -> velocity (d,) [mm/s] with which it moves, without turning. The others are at
+        rest.
     Raises InputError.
 
     >>> InitialState(velocities={1: (0.0, -1000.0)}).velocities[1]
@@ -103,17 +107,29 @@ class InitialState:
     """
 
     step: Step | None = None
-    velocities: Mapping[int, tuple[float, ...]] = field(default_factory=dict)
+    velocities: Mapping[Any, tuple[float, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.step is not None:
             instance("initial state, step", self.step, Step, "write InitialState(Step()), or leave it out")
-        if not isinstance(self.velocities, Mapping) or not all(is_index(index) for index in self.velocities):
-            wanted = "bodies' indices with velocities"
+        if not isinstance(self.velocities, Mapping) or not all(map(is_body, self.velocities)):
+            wanted = "bodies, or their indices, with velocities"
             refuse("initial state, velocities", wanted, self.velocities, "write {1: (0.0, -1000.0)}")
         wanted = "two finite components [mm/s] in 2D, three in 3D"
         given = {
-            int(index): vector(f"velocity of body {index}", v, (2, 3), wanted, "give one number a direction")
-            for index, v in self.velocities.items()
+            body: vector(f"velocity of body {_name(body)}", v, (2, 3), wanted, "give one number a direction")
+            for body, v in self.velocities.items()
         }
         object.__setattr__(self, "velocities", given)
+
+    def numbered(self, problem: Problem) -> InitialState:
+        """The state with indices in place of bodies. Raises InputError for a body that is not in the problem."""
+        numbers = [body_number(problem.bodies, body, "initial state, velocities") for body in self.velocities]
+        if len(set(numbers)) < len(numbers):
+            refuse("initial state, velocities", "each body once", Words(numbers), "leave out one of the two")
+        step = None if self.step is None else numbered_step(problem, self.step)
+        return replace(self, step=step, velocities=dict(zip(numbers, self.velocities.values())))
+
+
+def _name(body: int | Body) -> str:
+    return repr(body.name) if isinstance(body, Body) else str(body)

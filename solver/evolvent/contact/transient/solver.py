@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from evolvent.contact.problem.condensed_body import condense_bodies
-from evolvent.contact.problem.definition import Problem, Step, check_step
+from evolvent.contact.problem.definition import Problem, Step, numbered_step
 from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.contact.step.step_solution import Solution
 from evolvent.contact.transient.adaptive_steps import StepLengths
@@ -74,8 +74,9 @@ class Transient:
     def __init__(self, problem: Problem, settings: TransientSettings, start: InitialState | None = None) -> None:
         instance("transient, problem", problem, Problem, "write Problem(bodies, contacts)")
         instance("transient, settings", settings, TransientSettings, "write TransientSettings(time_step=1e-6)")
-        self.problem, self.settings, self.start = problem, settings, InitialState() if start is None else start
-        instance("transient, start", self.start, InitialState, "write InitialState(velocities={1: (0.0, -1000.0)})")
+        start = InitialState() if start is None else start
+        instance("transient, start", start, InitialState, "write InitialState(velocities={1: (0.0, -1000.0)})")
+        self.problem, self.settings, self.start = problem, settings, start.numbered(problem)
         check(problem, settings, self.start)
         self._scheme, self._lengths = TimeScheme(settings.spectral_radius), StepLengths.of(settings)
         self._reached: Reached | None = None
@@ -183,9 +184,7 @@ class Transient:
 
     def _step_at(self, loading: Loading, time: float) -> Step:
         step = loading(time) if callable(loading) else loading
-        step = Step() if step is None else step
-        check_step(self.problem, step)
-        return step
+        return numbered_step(self.problem, Step() if step is None else step)
 
     def _warn_if_coarse(self, solved: SolvedStep) -> None:
         """Warns of the first error beyond the tolerance, and of errors that are twice as large as the last one warned

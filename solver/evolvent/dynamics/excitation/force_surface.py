@@ -60,7 +60,7 @@ class MeshExcitation:
         return self.loaded.forces / self.depths
 
     def in_series(self, stiffness: float) -> MeshExcitation:
-        """The mesh behind a spring [N/mm] along the line of action: shafts and bearings without inertia."""
+        """The mesh behind a spring [N/mm] along the line of action, without inertia."""
         errors = self.loaded.errors + self.loaded.forces / stiffness
         slope = 1.0 / (1.0 / self.loaded.stiffness + 1.0 / stiffness)
         return replace(self, loaded=replace(self.loaded, errors=errors, stiffness=slope))

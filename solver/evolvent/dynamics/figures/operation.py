@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.operation_figures import OperationFigures
+from evolvent.dynamics.operation_figures import OperationFacts
 from evolvent.dynamics.results.histories import HistoryRow
 from evolvent.dynamics.results.tables import ExcitationRow
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
@@ -16,7 +16,7 @@ FOOT = "Phase 0: a tooth pair touches at the pitch point."
 
 
 def operation_picture(
-    figures: OperationFigures, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
+    figures: OperationFacts, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
     series_stiffness: float | None,
 ) -> bytes:
     """PNG of `operation_figure`."""
@@ -25,7 +25,7 @@ def operation_picture(
 
 
 def operation_figure(
-    figures: OperationFigures, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
+    figures: OperationFacts, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
     series_stiffness: float | None,
 ) -> Figure:
     """Mesh force and transmission error over the mesh periods after which the motion repeats. series_stiffness: of what
@@ -33,9 +33,9 @@ def operation_figure(
     load, count = figures.static_force_N, round(motion[-1].phase)
     figure = sheet(
         f"Mesh force and transmission error at {figures.speed_rpm:.5g} r/min",
-        f"Natural speed {figures.natural_speed_rpm:.0f} r/min. Largest force {1e-3 * figures.largest_force_N:.3g} kN, "
-        f"{figures.largest_force_N / load:.2f} times the static one; out of contact for "
-        f"{100 * figures.separated_share:.2g} % of the time.",
+        f"Natural speed {figures.natural_speed_rpm:.0f} r/min, {figures.bodies} gear bodies. "
+        f"Largest force {1e-3 * figures.largest_force_N:.3g} kN, {figures.largest_force_N / load:.2f} times the static "
+        f"one; out of contact for {100 * figures.separated_share:.2g} % of the time.",
         (9.6, 6.6),
     )
     force, error = figure.subplots(2, 1, sharex=True)

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from evolvent.dynamics.body_sentences import body_bands
 from evolvent.dynamics.results.response import BranchRow, DriveSummary, ResponseRow
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from evolvent_meshes.arrays import Floats
@@ -18,6 +19,10 @@ LEAST_SHARE, FAR_ABOVE = 5.0, 2.0
 """Least end of the axis of the time out of contact [%]; and largest amplitude of steady states, over that of the runs,
 that the amplitude's axis shows."""
 ISO = "K_v of ISO 6336-1"
+MOST_FOLDS = 8
+"""Speeds at which the branch turns back that the foot names."""
+BODIES = "#d9a441"
+"""Colour of speeds near the bodies' own vibration."""
 NO_ISO = f"No {ISO}: it wants dynamics.base_pitch_deviation_um and dynamics.profile_deviation_um."
 BAND = (
     "Its error: estimated, of running up, by the mesh and by the spacing of positions; large beside a jump that moves "
@@ -39,8 +44,9 @@ def response_figure(known: DriveSummary, rows: Sequence[ResponseRow], branch: Se
     speeds = np.array([row.speed_rpm for row in runs["up"]])
     figure = sheet(
         "Vibration over the speed: running up, running down, and the steady states between",
-        f"Natural speed {known.natural_speed_rpm:.0f} r/min at the mean {_stiffness_name(known)} stiffness of "
-        f"{known.mean_stiffness_N_per_um:.1f} N/µm, with {known.bodies} gear bodies{_folds(known)}.",
+        f"Natural speed {known.natural_speed_rpm:.0f} r/min, of {known.moving_mass_kg:.4g} kg on a mean "
+        f"{_stiffness_name(known)} stiffness in motion of {known.moving_stiffness_N_per_um:.1f} N/µm, with "
+        f"{known.bodies} gear bodies.",
         (11.0, 8.6),
     )
     amplitude, factor, apart = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 2.0, 1.0))
@@ -63,13 +69,14 @@ def response_figure(known: DriveSummary, rows: Sequence[ResponseRow], branch: Se
         for part in SUPERHARMONICS:
             axes.axvline(known.natural_speed_rpm / part, color=FAINT, lw=0.8, ls=":", zorder=0)
         axes.set_ylim(bottom=0.0)
-    beyond = _limit(amplitude, rows, branch)
+    amplitude.set_xlim(speeds[0], speeds[-1])
+    beyond = _limit(amplitude, rows, [row for row in branch if speeds[0] <= row.speed_rpm <= speeds[-1]])
+    limits = [*_draw_bodies((amplitude, factor, apart), known), *_draw_surface(factor, known, rows)]
     apart.set_ylim(top=max(LEAST_SHARE, apart.get_ylim()[1]))
     for part in SUPERHARMONICS:
         name = "natural" if part == 1 else f"1/{part}"
         amplitude.text(known.natural_speed_rpm / part, 0.995, f" {name}", va="top", color=INK, fontsize=8.0,
                        transform=amplitude.get_xaxis_transform(), clip_on=True)
-    amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
     factor.set_ylabel("largest mesh force\nover the static one")
     apart.set_ylabel("out of contact\n[% of the time]")
@@ -78,6 +85,8 @@ def response_figure(known: DriveSummary, rows: Sequence[ResponseRow], branch: Se
     foot(
         figure,
         "Dotted: the natural speed and its half, third and quarter." + hollow + beyond,
+        _folds(known, speeds),
+        *limits,
         _iso_words(known),
         *([BAND] if any(np.isfinite(row.dynamic_factor_error) for row in runs["up"]) else []),
     )
@@ -95,10 +104,12 @@ def _has_iso(known: DriveSummary) -> bool:
 
 
 def _limit(axes: Axes, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> str:
-    """Keeps the axis to what is run up and down where steady states go on far above; a sentence where it does."""
+    """Keeps the axis to what is run up and down where steady states at other speeds, or at these, go on far above; a
+    sentence where some of these do. branch: at the drawn speeds."""
     run = max(row.equivalent_amplitude_um for row in rows)
-    highest = max(row.equivalent_amplitude_um for row in branch)
+    highest = max((row.equivalent_amplitude_um for row in branch), default=0.0)
     if highest <= FAR_ABOVE * run:
+        axes.set_ylim(top=min(axes.get_ylim()[1], 1.1 * max(run, highest)))
         return ""
     axes.set_ylim(top=1.2 * run)
     return f" Steady states that no run comes to go on to {highest:.3g} µm: branch.csv."
@@ -134,10 +145,41 @@ def _iso_words(known: DriveSummary) -> str:
     )
 
 
-def _folds(known: DriveSummary) -> str:
-    """Clause on the speeds at which the branch of steady states turns back."""
-    speeds = sorted({f"{speed:.0f}" for speed in known.folds_rpm}, key=float)
-    return f"; steady states turn back at {', '.join(speeds)} r/min" if speeds else "; no steady state turns back"
+def _folds(known: DriveSummary, speeds: Floats) -> str:
+    """Sentence on the speeds (n,) drawn at which the branch of steady states turns back."""
+    inside = sorted({f"{speed:.0f}" for speed in known.folds_rpm if speeds[0] <= speed <= speeds[-1]}, key=float)
+    if not inside:
+        return "No steady state turns back at these speeds."
+    if len(inside) > MOST_FOLDS:
+        return f"Steady states turn back at {len(inside)} of these speeds: folds_rpm of dynamics.json."
+    return f"Steady states turn back at {', '.join(inside)} r/min."
+
+
+def _draw_bodies(panels: Sequence[Axes], known: DriveSummary) -> list[str]:
+    """Draws the speeds near the bodies' own vibration; returns a sentence where there are some."""
+    first, last = panels[0].get_xlim()
+    bands = [band for band in body_bands(known.first_body_speed_rpm) if band[1] < last and first < band[2]]
+    for axes in panels:
+        for _, low, high in bands:
+            axes.axvspan(max(low, first), min(high, last), color=BODIES, alpha=0.18, lw=0.0, zorder=0)
+    if not bands:
+        return []
+    return [
+        "Ochre: mesh harmonics excite the bodies' own vibration, which is left out; motion and forces are larger there."
+    ]
+
+
+def _draw_surface(axes: Axes, known: DriveSummary, rows: Sequence[ResponseRow]) -> list[str]:
+    """Draws the heaviest torque of the force surface where forces are beyond it; returns a sentence there."""
+    share = known.heaviest_torque_share
+    if share is None or share <= 1.0:
+        return []
+    heaviest = max(row.dynamic_factor for row in rows) / share
+    axes.axhline(heaviest, color=INK, lw=0.9, ls="-.", zorder=1)
+    return [
+        f"Dash-dotted: {heaviest:.3g}, the heaviest torque of the force surface; beyond it the mesh force goes on "
+        "straight (dynamics.torque_percents)."
+    ]
 
 
 def _mark_unrepeated(axes: Axes, speeds: Floats, values: Floats, runs: Sequence[ResponseRow]) -> None:

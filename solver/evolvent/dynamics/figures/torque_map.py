@@ -86,7 +86,7 @@ def torque_map_figure(rows: Sequence[MapRow]) -> Figure:
     bar = figure.colorbar(drawn, ax=panels, pad=0.015, label="largest mesh force over the static one")
     bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
     bar.minorticks_off()
-    foot(figure, *_feet(different))
+    foot(figure, *_feet(different, rows[0].bodies))
     return figure
 
 
@@ -99,12 +99,13 @@ def _largest(grid: MapGrid) -> str:
     return f"Largest: {', '.join(found)}; flanks {'part' if grid.apart.any() else 'never part'}."
 
 
-def _feet(different: Bools) -> list[str]:
-    """Sentences at the foot of the picture: cells, and differences between running up and down."""
-    said = "Each cell is a speed under a torque that was computed, torque_map.csv."
+def _feet(different: Bools, bodies: str) -> list[str]:
+    """Sentences at the foot of the picture: gear bodies (elastic or rigid), cells, and differences between running up
+    and down."""
+    of, said = f"Of {bodies} gear bodies.", "Each cell is a speed under a torque that was computed, torque_map.csv."
     if not different.any():
-        return [f"{said} Running up and down the factors are the same within {100.0 * OTHER:.0f} %."]
-    return [f"{said} Hatched: the factor differs by more than {100.0 * OTHER:.0f} % from that of running up."]
+        return [of, f"{said} Running up and down the factors are the same within {100.0 * OTHER:.0f} %."]
+    return [of, f"{said} Hatched: the factor differs by more than {100.0 * OTHER:.0f} % from that of running up."]
 
 
 def _draw_cells(axes: Axes, grid: MapGrid, factor: Floats, norm: LogNorm) -> QuadMesh:

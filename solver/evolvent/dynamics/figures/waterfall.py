@@ -54,7 +54,8 @@ def waterfall_figure(known: DriveSummary, rows: Sequence[SpectrumRow]) -> Figure
     foot(
         figure,
         "Numbers: orders of the mesh. Narrow lines between them: a motion that does not repeat with every mesh.",
-        f"Dotted: jumps. Thin grey: below {LOWEST * load:.2g} N. All lines, running down, too: spectrum.csv.",
+        f"Of {known.bodies} gear bodies. Dotted: jumps. Thin grey: below {LOWEST * load:.2g} N. All lines, running "
+        "down, too: spectrum.csv.",
     )
     return figure
 

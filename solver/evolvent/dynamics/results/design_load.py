@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,15 +43,19 @@ class ExcitationFacts:
     design_to_Nm: float | None
     """Heaviest torque around the design torque whose peak-to-peak value is larger by no more than the error; null
     without error bars."""
+    warnings: tuple[str, ...]
+    """Sentences that a reader of the excitation has to know, as the command prints them."""
 
 
 EXCITATION_FACTS = Record("excitation.json", ExcitationFacts)
 
 
 def excitation_facts(
-    title: str, level: str, excitation: MeshExcitation, radius: float, companion: CoarseExcitation
+    title: str, level: str, excitation: MeshExcitation, radius: float, companion: CoarseExcitation,
+    warnings: Sequence[str] = (),
 ) -> ExcitationFacts:
-    """Facts of an excitation. radius: base radius of the gear that holds the torque [mm]."""
+    """Facts of an excitation. radius: base radius of the gear that holds the torque [mm]. warnings: sentences on all of
+    it."""
     forces = excitation.loaded.forces
     torques = tuple(float(1e-3 * radius * force) for force in forces)
     count = len(excitation.unloaded_error)
@@ -58,6 +63,7 @@ def excitation_facts(
     return ExcitationFacts(
         title=title, mesh_level=level, positions=count, torques_Nm=torques, design_torque_Nm=torque,
         design_peak_to_peak_um=size, design_peak_to_peak_um_error=error, design_from_Nm=lightest, design_to_Nm=heaviest,
+        warnings=tuple(warnings),
     )
 
 

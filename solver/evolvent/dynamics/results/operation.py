@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from evolvent.dynamics.operating_point import Operation
-from evolvent.dynamics.operation_figures import OperationFigures
+from evolvent.dynamics.operation_figures import OperationFacts
 from evolvent.dynamics.results.histories import HISTORIES, Motion, history_rows
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.table import Record
 
-OPERATION = Record("operation.json", OperationFigures)
+OPERATION = Record("operation.json", OperationFacts)
 
 
 def write_operation(folder: RunFolder, operation: Operation, coming: str, radius: float) -> None:
     """Writes excitation.csv, harmonics.csv, histories.csv and operation.json. coming: up or down; radius: base radius
     of the gear with the torque [mm]. Raises WriteError, FolderError."""
-    figures = OperationFigures.of(operation)
+    figures = OperationFacts.of(operation)
     EXCITATION.write(folder, excitation_rows(operation.excitation, radius))
     HARMONICS.write(folder, harmonic_rows(operation.excitation, radius))
     motion = Motion(figures.speed_rpm, coming, operation.period, operation.repeats, operation.paths)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.dynamics.body_sentences import near_body_vibration
 from evolvent.dynamics.oscillator.response import Response, response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
@@ -64,7 +66,7 @@ class ResponseRow:
     """Smallest mesh force, damping included: below 0 where back flanks press, or the damper pulls."""
     dynamic_factor: float
     """Largest mesh force of this motion over the static one; with the damping that the scene gives, and of all teeth in
-    contact: not K_v of ISO 6336-1."""
+    contact: not K_v of ISO 6336-1. The force of the damper is in it; in that of transient.json it is not."""
     dynamic_factor_error: float
     """Estimated error of the dynamic factor by the mesh and by the spacing of positions; NaN where there is no coarse
     companion (`output.error_bars`)."""
@@ -76,6 +78,10 @@ class ResponseRow:
     """Share of the time in which no flanks touch."""
     back_contact_share: float
     """Share of the time in which the back flanks touch."""
+    near_body_vibration: bool
+    """Whether one of the first three mesh harmonics excites the bodies' own vibration, which is left out: from 0.9 to
+    1.2 times the speed at which it has `body_frequency_Hz` of dynamics.json. Motion and forces are larger than computed
+    there. False for rigid bodies, which have none."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +111,11 @@ class DriveSummary:
     """Moment of inertia of the pinion."""
     wheel_inertia_kg_m2: float
     """Moment of inertia of the wheel."""
+    pinion_added_inertia_kg_m2: float | None
+    """Moment of inertia of the pinion beyond that of its meshed body: it turns rigidly with the bore. Null for rigid
+    bodies, all of whose inertia does."""
+    wheel_added_inertia_kg_m2: float | None
+    """Moment of inertia of the wheel beyond that of its meshed body; null for rigid bodies."""
     mean_stiffness_N_per_um: float
     """Stiffness of the whole face under the torque, mean over the pitch, with what gives way in series: the secant one
     where dynamics.mesh is secant, else the tangent one."""
@@ -112,24 +123,21 @@ class DriveSummary:
     """Estimated error of the mean stiffness by the mesh and by the spacing of positions; null where there is no coarse
     companion (`output.error_bars`)."""
     natural_speed_rpm: float
-    """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness, on rigid or
-    elastic bodies."""
+    """Speed of the pinion at which the mesh frequency is √(moving_stiffness_N_per_um / moving_mass_kg) / 2π [Hz]."""
     natural_speed_rpm_error: float
     """Estimated error of the natural speed by that of the mean stiffness."""
     bodies: str
-    """Model of the gear bodies: elastic, they give way with their inertia where it is; or rigid, with all inertia at
-    the bores."""
+    """Model of the gear bodies: elastic, with their inertia where it is, or rigid, with all inertia at the bores."""
     rigid_natural_speed_rpm: float
-    """Natural speed with all inertia at the bores: too low, the more the smaller these are. It is natural_speed_rpm
-    where bodies are rigid."""
+    """Natural speed with all inertia at the bores: too low, the more the smaller these are."""
     moving_mass_kg: float
     """Mass of the one degree of freedom: m_e; with elastic bodies more, by what their elastic modes lag behind."""
     moving_stiffness_N_per_um: float
-    """Mean stiffness in motion: mean_stiffness_N_per_um; with elastic bodies more, as their own inertia holds them and
-    not their bores."""
+    """Mean stiffness in motion: mean_stiffness_N_per_um; with elastic bodies more, as their inertia holds them."""
     body_frequency_Hz: float | None
     """Lowest frequency of the bodies' own vibration on the mesh, which the one degree of freedom leaves out: where a
-    low mesh harmonic has it the motion is larger than computed. Null for rigid bodies."""
+    low mesh harmonic comes near to it motion and forces are larger than computed (near_body_vibration of response.csv).
+    The centres of the bores cannot move: on soft bearings the frequencies are others. Null for rigid bodies."""
     static_force_N: float
     """Static mesh force: torque over base radius."""
     damping_N_s_per_mm: float
@@ -155,11 +163,9 @@ class DriveSummary:
     """Estimated errors of jumps_up_rpm by the mesh and by the spacing of positions; null where there is no coarse
     companion, and of a jump that is not found on its mesh, or from every other position."""
     jumps_down_rpm: tuple[float, ...]
-    """Speeds at which a pair that runs down leaves the branch: at a fold, or where the steady state loses its stability
-    otherwise; in the order in which it comes there."""
+    """Speeds at which a pair that runs down leaves the branch, like jumps_up_rpm."""
     jumps_down_rpm_error: tuple[float, ...]
-    """Estimated errors of jumps_down_rpm by the mesh and by the spacing of positions; null where there is no coarse
-    companion, and of a jump that is not found on its mesh, or from every other position."""
+    """Estimated errors of jumps_down_rpm, like jumps_up_rpm_error."""
     heaviest_torque_share: float | None
     """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface was
     extrapolated linearly. Null with another model of the mesh."""
@@ -169,8 +175,8 @@ class DriveSummary:
     """Mesh stiffness c_γα of ISO 6336-1:2006, clause 9, per mm of face width; a secant of teeth on solid discs or, by
     C_R, on webs, not the stiffness that was computed."""
     iso_resonance_speed_rpm: float
-    """Resonance speed n_E1 of the pinion by ISO 6336-1:2006, clause 6, from iso_mesh_stiffness_N_per_mm_um and the
-    equivalent mass."""
+    """Resonance speed n_E1 of the pinion by ISO 6336-1:2006, clause 6, from iso_mesh_stiffness_N_per_mm_um and
+    equivalent_mass_kg."""
     iso_relief_term: float
     """B_k of ISO 6336-1:2006, clause 6: what tip relief leaves of the deflection, 1 without one."""
     iso_main_resonance_rpm: tuple[float, float]
@@ -179,6 +185,15 @@ class DriveSummary:
     """Base pitch deviation f_pb, as in the scene; null where it is not known."""
     iso_profile_deviation_um: float | None
     """Profile form deviation f_fα, as in the scene; null where it is not known."""
+    warnings: tuple[str, ...]
+    """Sentences that a reader of the tables has to know, as `evolvent dynamics` prints them."""
+
+    @property
+    def first_body_speed_rpm(self) -> float:
+        """Speed of the pinion at which the first mesh harmonic has `body_frequency_Hz`; infinite for rigid bodies."""
+        if self.body_frequency_Hz is None:
+            return math.inf
+        return self.body_frequency_Hz / self.mesh_frequency_Hz * self.natural_speed_rpm
 
 
 RESPONSE, BRANCH = Table("response.csv", ResponseRow), Table("branch.csv", BranchRow)
@@ -220,6 +235,7 @@ def response_rows(
                 largest_force_N=each.largest_force, smallest_force_N=each.smallest_force,
                 dynamic_factor=each.largest_force / drive.model.load, dynamic_factor_error=float(factor_error),
                 dynamic_factor_iso=iso.factor(speed), separated_share=each.apart, back_contact_share=each.behind,
+                near_body_vibration=near_body_vibration(drive, speed),
             )
 
 
@@ -242,18 +258,21 @@ def jumps(drive: Drive, runs: Iterable[Running]) -> tuple[float, ...]:
 
 def summary(
     drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: float, heaviest: float, iso: MethodB,
-    errors: VibrationErrors,
+    errors: VibrationErrors, warnings: Sequence[str] = (),
 ) -> DriveSummary:
     """Summary of a vibration. largest: largest mesh force of all speeds [N]; heaviest: largest mesh force of the force
-    surface's torques [N]."""
+    surface's torques [N]. warnings: sentences on all of it."""
     pinion, wheel = settings.inertias
+    added = settings.added_inertias
     folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
     begin, end = iso.main_resonance
     return DriveSummary(
         equivalent_mass_kg=1e3 * drive.equivalent_mass, pinion_inertia_kg_m2=1e-3 * pinion,
-        wheel_inertia_kg_m2=1e-3 * wheel, mean_stiffness_N_per_um=1e-3 * drive.mean_stiffness,
+        wheel_inertia_kg_m2=1e-3 * wheel, pinion_added_inertia_kg_m2=1e-3 * added[0] if added else None,
+        wheel_added_inertia_kg_m2=1e-3 * added[1] if added else None,
+        mean_stiffness_N_per_um=1e-3 * drive.mean_stiffness,
         mean_stiffness_N_per_um_error=1e-3 * errors.mean_stiffness, natural_speed_rpm=drive.natural_speed,
-        natural_speed_rpm_error=errors.natural_speed, bodies="rigid" if settings.bodies is None else "elastic",
+        natural_speed_rpm_error=errors.natural_speed, bodies=settings.bodies_named,
         rigid_natural_speed_rpm=drive.rigid_natural_speed, moving_mass_kg=1e3 * drive.model.mass,
         moving_stiffness_N_per_um=1e-3 * drive.moving_stiffness,
         body_frequency_Hz=drive.body_frequency if settings.bodies is not None else None,
@@ -267,7 +286,7 @@ def summary(
         iso_resonance_speed_rpm=iso.resonance_speed, iso_relief_term=iso.relief_term,
         iso_main_resonance_rpm=(begin * iso.resonance_speed, end * iso.resonance_speed),
         iso_base_pitch_deviation_um=iso.accuracy.base_pitch_deviation,
-        iso_profile_deviation_um=iso.accuracy.profile_deviation,
+        iso_profile_deviation_um=iso.accuracy.profile_deviation, warnings=tuple(warnings),
     )
 
 

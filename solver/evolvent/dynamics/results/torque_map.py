@@ -18,8 +18,8 @@ class MapRow:
     torque_Nm: float
     """Torque on the gear that the scene names."""
     natural_speed_rpm: float
-    """Speed of the pinion at which the mesh frequency is the natural frequency at the mean tangent stiffness under this
-    torque."""
+    """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness in motion under
+    this torque."""
     speed_rpm: float
     """Speed of the pinion."""
     way: str
@@ -38,6 +38,8 @@ class MapRow:
     """Share of the time in which no flanks touch."""
     back_contact_share: float
     """Share of the time in which the back flanks touch."""
+    bodies: str
+    """elastic or rigid gear bodies, as in dynamics.json."""
 
 
 TORQUE_MAP = Table("torque_map.csv", MapRow)
@@ -53,5 +55,5 @@ def map_rows(torque: float, drive: Drive, swept: SpeedSweep) -> Iterator[MapRow]
                 way=way, repeats=run.repeats, equivalent_amplitude_um=UM * each.equivalent_amplitude,
                 elastic_equivalent_amplitude_um=UM * each.elastic_equivalent_amplitude,
                 largest_force_N=each.largest_force, dynamic_factor=each.largest_force / drive.model.load,
-                separated_share=each.apart, back_contact_share=each.behind,
+                separated_share=each.apart, back_contact_share=each.behind, bodies=drive.settings.bodies_named,
             )

@@ -1,4 +1,4 @@
-"""Interface to dolfinx, version 0.5.2 (Debian 12) to 0.9.0 (Debian 13) and later; no other file depends on the version.
+"""Interface to dolfinx, versions 0.5.2 (Debian 12) to 0.9.0 (Debian 13) and later; only this room depends on them.
 
 Versions are distinguished by the names of functions and arguments, not by numbers. Each body is meshed and assembled on
 one process (MPI.COMM_SELF). dolfinx renumbers nodes and cells; the functions here take and give the caller's numbers.
@@ -62,8 +62,7 @@ def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
 
 
 def gmsh_permutation(shape: str, count: int) -> Ints:
-    """Permutation perm (count,): cells[:, perm] are in the node order of basix where cells of `count` nodes are in that
-    of gmsh."""
+    """Permutation (count,): cells[:, perm] have the node order of basix where cells of `count` nodes have gmsh's."""
     return np.asarray(cpp.io.perm_gmsh(getattr(cpp.mesh.CellType, shape), count), dtype=np.int64)
 
 
@@ -97,7 +96,7 @@ def input_cells(mesh: Mesh) -> Ints:
 
 def cell_nodes(mesh: Mesh) -> Ints:
     """Node numbers of the caller (n_c, k) for the cells of dolfinx, in the node order of basix."""
-    return input_nodes(mesh)[_geometry_dofmap(mesh)]
+    return input_nodes(mesh)[geometry_dofmap(mesh)]
 
 
 def node_dofs(space: Space, mesh: Mesh, n_nodes: int | None = None) -> Ints:
@@ -255,7 +254,8 @@ def _n_cells(mesh: Mesh) -> int:
     return int(mesh.topology.index_map(mesh.topology.dim).size_local)
 
 
-def _geometry_dofmap(mesh: Mesh) -> Ints:
+def geometry_dofmap(mesh: Mesh) -> Ints:
+    """Rows of mesh.geometry.x (n_c, k) that are the nodes of dolfinx's cells, in the node order of basix."""
     return _rows(mesh.geometry.dofmap, _n_cells(mesh))
 
 

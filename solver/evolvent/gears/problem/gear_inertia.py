@@ -67,6 +67,11 @@ def equivalent_mass(pair: GearPair, inertias: tuple[float, float]) -> float:
     return pinion * wheel / (pinion * pair.wheel.base_radius**2 + wheel * pair.pinion.base_radius**2)
 
 
+def added_inertia(inertia: float, body: float) -> float:
+    """Moment of inertia beyond that of the gear's body, in its unit; 0 within `ROUNDING` of it."""
+    return inertia - body if inertia > (1.0 + ROUNDING) * body else 0.0
+
+
 def refuse_light_gears(pair: GearPair, inertias: tuple[float, float], density: float, remedy: str) -> None:
     """Raises InputError where pinion or wheel has less moment of inertia [t·mm²] than its body as it is drawn.
 

@@ -63,7 +63,7 @@ def run_excitation(
         excitation = computed_excitation(loads, comm, progress, fine, prepare)
         companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
         progress.stage(OUTPUT)
-        return said + loads.warnings + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, loads))
+        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, loads))
 
 
 def writing_results(
@@ -156,19 +156,25 @@ def _written(
 ) -> list[str]:
     """Writes all files, in place of those of an earlier call. On rank 0 alone."""
     folder.remove(OF_DYNAMICS)
-    return write_excitation(folder, excitation, companion, loads)
+    return [*excitation_warnings(excitation, companion, loads), *write_excitation(folder, excitation, companion, loads)]
+
+
+def excitation_warnings(excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques) -> list[str]:
+    """Sentences that a reader of the excitation has to know, on missing error bars, too."""
+    mended = excitation.loaded.deflected and not loads.problem.options.deflected_flanks
+    return [*loads.warnings, *filter(None, [ON_DEFLECTED if mended else "", companion.failure])]
 
 
 def write_excitation(
     folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques
 ) -> list[str]:
-    """Writes tables and, where it is wanted, the picture; returns a sentence where that could not be drawn or error
-    bars not be estimated. Raises WriteError, FolderError."""
+    """Writes tables and, where it is wanted, the picture; returns a sentence where that could not be drawn. Raises
+    WriteError, FolderError."""
     scene, radius = loads.scene, loads.base_radius
     EXCITATION.write(folder, excitation_rows(excitation, radius, companion))
     HARMONICS.write(folder, harmonic_rows(excitation, radius, companion))
-    EXCITATION_FACTS.write(folder, excitation_facts(scene.title, scene.mesh.level, excitation, radius, companion))
+    said = excitation_warnings(excitation, companion, loads)
+    facts = excitation_facts(scene.title, scene.mesh.level, excitation, radius, companion, said)
+    EXCITATION_FACTS.write(folder, facts)
     pictures = [EXCITATION_PICTURE] if wanted_output(scene).pictures else []
-    failures = draw(from_tables(pictures, folder.out), folder).failures
-    mended = excitation.loaded.deflected and not loads.problem.options.deflected_flanks
-    return [*failures, *filter(None, [ON_DEFLECTED if mended else "", companion.failure])]
+    return [*draw(from_tables(pictures, folder.out), folder).failures]

@@ -21,7 +21,6 @@ from evolvent.dynamics.results.response import (
     BRANCH,
     DYNAMICS,
     RESPONSE,
-    DriveSummary,
     branch_rows,
     largest_force,
     response_rows,
@@ -41,6 +40,7 @@ from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.run.dynamics.excitation import (
     companion_of,
     computed_excitation,
+    excitation_warnings,
     write_excitation,
     writing_results,
 )
@@ -86,7 +86,7 @@ def run_dynamics(
         excitation = computed_excitation(loads, comm, progress, fine, prepare)
         companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
         written = partial(_written, excitation, companion, loads, section, settings, out, progress)
-        return said + loads.warnings + on_first(comm, written)
+        return said + on_first(comm, written)
 
 
 def accuracy(section: DynamicsSection) -> Accuracy:
@@ -117,22 +117,22 @@ def _written(
     moving = motions(vibrating, swept, section.histories_rpm)
     over_torque = _over_torque(excitation, first, vibrating, settings, section, progress)
     progress.stage(OUTPUT)
-    known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso, errors)
+    share = largest_force(found), float(excitation.loaded.forces[-1])
+    said = *excitation_warnings(excitation, companion, loads), *doubtful(loads.scene.planned_vibration())
+    said = *said, *_warnings(vibrating, settings, share, swept), *_not_followed(vibrating, swept)
+    said = *said, *_branch_warnings(swept), *_not_repeating(vibrating, swept), *errors.said
+    said = *said, *_iso_warnings(first, iso), *over_torque.warnings
     folder = RunFolder(out)
     folder.remove(OF_DYNAMICS)
     failures = write_excitation(folder, excitation, companion, loads)
     RESPONSE.write(folder, response_rows(vibrating, swept, found, iso, errors))
     BRANCH.write(folder, branch_rows(vibrating, swept))
-    DYNAMICS.write(folder, known)
+    DYNAMICS.write(folder, summary(vibrating, settings, swept, *share, iso, errors, said))
     SPECTRUM.write(folder, spectrum_rows(vibrating, swept, found))
     HISTORIES.write(folder, history_rows(moving))
     TORQUE_MAP.write(folder, over_torque.rows)
     pictures = VIBRATION_PICTURES if wanted_output(loads.scene).pictures else ()
-    failures += draw(from_tables(pictures, out), folder).failures
-    said = *doubtful(loads.scene.planned_vibration()), *_warnings(vibrating, settings, known, swept)
-    said = *said, *_not_followed(vibrating, swept), *_branch_warnings(swept)
-    said = *said, *_not_repeating(vibrating, swept), *errors.said
-    return [*failures, *said, *_iso_warnings(first, iso), *over_torque.warnings]
+    return [*said, *failures, *draw(from_tables(pictures, out), folder).failures]
 
 
 def _over_torque(
@@ -148,25 +148,24 @@ def _over_torque(
     return torque_map(excitation, problem, settings, loads, speeds, progress.advance)
 
 
-
-
 def _warnings(
-    vibrating: Drive, settings: DriveSettings, known: DriveSummary, swept: SpeedSweep
+    vibrating: Drive, settings: DriveSettings, share: tuple[float, float], swept: SpeedSweep
 ) -> list[str]:
     """Warnings on the elastic bodies, a backlash below the static deflection, and mesh forces above that of the
-    heaviest torque."""
+    heaviest torque. share: largest mesh force, and that of the heaviest torque
+    [N]."""
     found, deflection = [], vibrating.model.load / vibrating.mean_stiffness
     found += bodies_said(vibrating, *(speed_of(vibrating, float(swept.periods[end])) for end in (0, -1)))
     if settings.backlash < deflection:
         found.append(
-            f"dynamics.backlash_um: found {known.backlash_um:.3g} µm, less than the static deflection of "
+            f"dynamics.backlash_um: found {1e3 * settings.backlash:.3g} µm, less than the static deflection of "
             f"{1e3 * deflection:.3g} µm: the back flanks catch the teeth at once, so that there is hardly free flight "
             "and no jump; give the backlash of the pair"
         )
-    if (share := known.heaviest_torque_share) is not None and share > 1.0:
+    if settings.mesh == "force_surface" and share[0] > share[1]:
         found.append(
-            f"dynamics.torque_percents: the largest mesh force is {share:.3g} times that of the heaviest torque; "
-            "beyond that the force goes on straight. Add heavier ones until this is below 1"
+            f"dynamics.torque_percents: the largest mesh force is {share[0] / share[1]:.3g} times that of the heaviest "
+            "torque; beyond that the force goes on straight. Add heavier ones until this is below 1"
         )
     return found
 

@@ -116,8 +116,9 @@ class DynamicsSection(SceneSection):
     pinion_inertia_kg_m2: float | None = _inertia("pinion")
     wheel_inertia_kg_m2: float | None = _inertia("wheel")
     series_stiffness_N_per_um: float | None = key(
-        "stiffness along the line of action of what gives way with the mesh, shafts and bearings, without inertia; by "
-        "default nothing does",
+        "stiffness along the line of action of what gives way in line with the mesh, without inertia, such as a "
+        "torsional compliance that is fitted to a measured resonance; no bearing whose lateral mode matters, which "
+        "lies behind the gear's mass; by default nothing gives way",
         "a number from 0.001 to 1e9, in N/µm", "delete the key for the default", default=None, ge=1e-3, le=1e9,
     )
 

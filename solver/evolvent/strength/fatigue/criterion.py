@@ -33,6 +33,8 @@ class Criterion:
     """Source of the exponent."""
     exponent_place: str = ""
     """Place of the values that the source speaks of."""
+    without_life: tuple[str, ...] = ()
+    """Places at which it is a multiple of μ p0: a life by it would be one by the friction coefficient alone."""
     pressure_power: float = 1.0
     """Largest power with which the criterion grows with the contact pressure."""
     of_history: bool = True
@@ -50,12 +52,13 @@ CONTACT_PRESSURE = Criterion(
 )
 ORTHOGONAL_SHEAR = Criterion(
     "orthogonal_shear_range", "range of orthogonal shear stress", exponent=9.19, exponent_place=BELOW,
+    without_life=(SURFACE,),
     source="Lundberg and Palmgren, line contact: c/e with c = 31/3, e = 9/8, at equal depth and stressed volume",
 )
 MAXIMUM_SHEAR = Criterion("maximum_shear", "maximum shear stress (Tresca)")
 VON_MISES = Criterion("von_mises", "von Mises")
 DANG_VAN = Criterion("dang_van", "Dang Van")
-TENSION = Criterion("tension", "tensile stress along the flank", places=NEAR_SURFACE)
+TENSION = Criterion("tension", "tensile stress along the flank", places=NEAR_SURFACE, without_life=(SURFACE,))
 FATEMI_SOCIE = Criterion("fatemi_socie", "Fatemi-Socie", unit="", pressure_power=2.0)
 
 

@@ -85,7 +85,8 @@ class FatigueLifeRow:
     life_ratio: float
     """Ratio of lives at one point of the flank, `point_roll_distance_mm` of fatigue.csv, which may lie beside a
     tip-edge zone (`at_zone_end` of the first coefficient there). NaN where the criterion is negligible at the first
-    coefficient; infinite where it is at this one alone."""
+    coefficient, and of orthogonal shear and tension at the surface, which are multiples of μ p0: such lives would be
+    those of the friction coefficients alone. Infinite where it is negligible at this coefficient alone."""
     life_ratio_at_points: float
     """Ratio of lives by the median change at the points of the flank, each compared with itself; quote both."""
 

@@ -41,7 +41,8 @@ def life_rows(found: Sequence[FrictionFatigue], exponents: Sequence[float]) -> I
             own, first = each.gears[member], found[0].gears[member]
             for criterion in own.values:
                 for place in criterion.places:
-                    ratios = changes(own, first, criterion, place)
+                    none = place in criterion.without_life
+                    ratios = (math.nan, math.nan) if none else changes(own, first, criterion, place)
                     for m, source in (*criterion.slopes_at(place), *((given, "") for given in exponents)):
                         at_point, at_points = _lives(ratios, m)
                         yield FatigueLifeRow(

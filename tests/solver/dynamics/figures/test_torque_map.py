@@ -24,7 +24,8 @@ def made(factors: Sequence[float] = (), apart: Sequence[float] = ()) -> list[Map
                 factor = factors[cell] if factors and way == "down" else 1.5
                 share = apart[cell] if apart and way == "down" else 0.0
                 force = torque * factor
-                found.append(MapRow(torque, 100.0 * torque, speed, way, 1, 1.0, 1.0, force, factor, share, 0.0))
+                common = torque, 100.0 * torque, speed, way, 1, 1.0, 1.0
+                found.append(MapRow(*common, force, factor, share, 0.0, "elastic"))
     return found
 
 
@@ -66,6 +67,7 @@ def test_largest_factors_stand_above() -> None:
     (said,) = [text for text in texts if text.startswith("Largest")]
     assert "1.5 running up (1000 r/min, 10 N·m), 2.25 running down (3000 r/min, 20 N·m)" in said
     assert said.endswith("flanks never part.")
+    assert any(text.startswith("Of elastic gear bodies.\n") for text in texts)
 
 
 def test_one_torque_alone_is_drawn() -> None:

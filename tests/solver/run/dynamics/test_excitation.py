@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -111,6 +112,7 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
     loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS[:1])
     (said,) = run_excitation(loads, tmp_path, quiet=True)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
+    assert json.loads((tmp_path / "excitation.json").read_text(encoding="utf-8"))["warnings"] == [said]
     assert np.isnan(column(rows(tmp_path / "excitation.csv"), "secant_stiffness_N_per_um_error")).all()
 
 

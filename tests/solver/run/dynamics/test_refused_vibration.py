@@ -91,3 +91,24 @@ def test_somebody_names_the_backlash(
         with pytest.raises(SceneError, match=r"dynamics\.backlash_um: found nothing.*tooth_thickness.*centre_dist"):
             compute(given, tmp_path / "out", quiet=True)
         assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("setting", "key"),
+    [
+        ("dynamics.base_pitch_deviation_um=0", "dynamics.base_pitch_deviation_um"),
+        ("dynamics.speed_rpm=[4000,500]", "dynamics.speed_rpm"),
+        ("dynamics.torque_percents=[50,200]", "dynamics.torque_percents"),
+        ("dynamics.torque_percents=[100,100]", "dynamics.torque_percents"),
+        ("dynamics.damping_ratio=0", "dynamics.damping_ratio"),
+        ("dynamics.pinion_inertia_kg_m2=-1", "dynamics.pinion_inertia_kg_m2"),
+        ('dynamics.mesh="cubic"', "dynamics.mesh"),
+        ("dynamics.histories_rpm=[3000,3000]", "dynamics.histories_rpm"),
+        ("dynamics.histories_rpm=[-1]", "dynamics.histories_rpm"),
+        ("dynamics.tolerance_class=13", "dynamics.tolerance_class"),
+        ('dynamics.flank_surface="through_hardened"', "dynamics.contact_endurance_MPa"),
+    ],
+)
+def test_wrong_keys_are_named(setting: str, key: str) -> None:
+    with pytest.raises(SceneError, match=key):
+        scene(setting)

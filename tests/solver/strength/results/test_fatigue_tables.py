@@ -43,7 +43,7 @@ def flank(peaks: list[float], shear: Rows, tension: Floats) -> FlankFatigue:
     surface = np.zeros((n, 4))
     surface[:, 0] = peaks
     edge = np.zeros((n, 4))
-    edge[:, 0] = tension
+    edge[:, 0] = edge[:, 1] = tension
     values = {CONTACT_PRESSURE: surface, ORTHOGONAL_SHEAR: np.array(shear).reshape(n, 4), TENSION: edge}
     return FlankFatigue(loads, DEPTHS, values)
 
@@ -122,7 +122,7 @@ def test_what_is_negligible_at_the_first_coefficient_has_no_change() -> None:
     found = [FrictionFatigue(0.0, (still, still), math.nan), FOUND[1]]
     row = next(row for row in fatigue_rows(PAIR, found) if (row.friction, row.criterion) == (0.15, "tension"))
     assert row.value == 150.0 and np.isnan([row.change_percent, row.change_at_points_percent, row.point_value]).all()
-    lives = [row for row in life_rows(found, [10.0]) if row.criterion == "tension" and row.place == SURFACE]
+    lives = [row for row in life_rows(found, [10.0]) if row.criterion == "tension" and row.place == TENTH]
     assert len(lives) == 2 and np.isnan([(row.life_ratio, row.life_ratio_at_points) for row in lives]).all()
 
 
@@ -131,7 +131,7 @@ def test_lives() -> None:
     long; contact pressure is the same, with its own exponent too; nothing of the first coefficient itself."""
     rows = list(life_rows(FOUND, [4.0]))
     assert {row.friction for row in rows} == {0.15}
-    (tension,) = [row for row in rows if (row.criterion, row.gear, row.place) == ("tension", "pinion", SURFACE)]
+    (tension,) = [row for row in rows if (row.criterion, row.gear, row.place) == ("tension", "pinion", TENTH)]
     assert tension.life_ratio == pytest.approx(0.75**-4)
     assert tension.life_ratio_at_points == pytest.approx(0.8**-4)
     pressure = [row for row in rows if row.criterion == "contact_pressure" and row.gear == "wheel"]
@@ -139,12 +139,23 @@ def test_lives() -> None:
         (13.22, True, 1.0), (4.0, False, 1.0)]
 
 
+def test_no_life_by_the_coefficients_alone() -> None:
+    """Orthogonal shear and tension at the surface are μ p0 and 2 μ p0: once, lives by them had ratios up to hundreds.
+    None there, by each exponent; at a tenth of a half-width there are lives by both."""
+    for name in (ORTHOGONAL_SHEAR.name, TENSION.name):
+        for place, known in ((SURFACE, False), (TENTH, True)):
+            rows = [row for row in life_rows(FOUND, [4.0, 9.0]) if (row.criterion, row.place) == (name, place)]
+            assert len(rows) == 4
+            lives = np.array([(row.life_ratio, row.life_ratio_at_points) for row in rows])
+            assert (np.isfinite(lives) == known).all()
+
+
 def test_life_without_what_there_was(recwarn: pytest.WarningsRecorder) -> None:
     """Tension that is gone, or next to, at the second coefficient alone: a life without end, and no error."""
     for left in (0.0, 1e-60):
         still = replace(LESS, values={**LESS.values, TENSION: LESS.values[TENSION] * left})
         rows = life_rows([FOUND[0], FrictionFatigue(0.0, (still, still), math.nan)], [10.0])
-        assert [row.life_ratio for row in rows if (row.criterion, row.place) == ("tension", SURFACE)] == [math.inf] * 2
+        assert [row.life_ratio for row in rows if (row.criterion, row.place) == ("tension", TENTH)] == [math.inf] * 2
     assert not len(recwarn)
 
 

@@ -49,8 +49,9 @@ def test_at_least_45_malformed_scenes() -> None:
         ("material.poissons_ratio", "material.nu"), ("pair.a", "pair.centre_distance_mm"),
         ("wheel.inner_diameter_mm", "wheel.bore_diameter_mm"), ("pinion.outer_diameter", "pinion.tip_diameter_mm"),
         ("transient.speed_rpm", "transient.speeds_rpm"), ("transient.speed", "transient.speeds_rpm"),
-        ("fatigue.exponent", "fatigue.exponents"), ("dynamics.speeds_rpm", "dynamics.speed_rpm"),
-        ("load.speed_rpm", "dynamics.speed_rpm"),
+        ("fatigue.exponent", "fatigue.exponents"),
+        ("dynamics.speeds_rpm", "dynamics.speed_rpm or dynamics.operating_rpm or transient.speeds_rpm"),
+        ("load.speed_rpm", "dynamics.operating_rpm or transient.speeds_rpm"),
     ],
 )
 def test_unknown_key_suggests_the_key_that_was_meant(written: str, meant: str) -> None:

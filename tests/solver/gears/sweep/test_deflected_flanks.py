@@ -190,7 +190,7 @@ def test_a_pitch_out_of_balance_is_solved_again_on_deflected_flanks(
     log = (tmp_path / "run.log").read_text(encoding="utf-8")
     assert "wanted an energy balance within 0.002 of the input, found" in log
     assert log.count("condensed in") == 1
-    assert log.index("skipped, deflected-flanks") < log.index("solved again, on deflected flanks")
+    assert "skipped, deflected-flanks" not in log and "solved again, on deflected flanks" in log
 
 
 @pytest.mark.parametrize(("number", "complete"), [(9, 3), (17, 7), (22, 1)])

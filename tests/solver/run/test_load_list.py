@@ -101,5 +101,5 @@ def test_impossible_percentages_are_refused(percents: str, tmp_path: Path, capsy
 
 def test_torque_beyond_those_of_the_meshes_is_refused() -> None:
     """A scene whose meshes serve 1 to 2 N·m only."""
-    with pytest.raises(SceneError, match=r"mesh_torques_Nm(.|\n)*`evolvent loads \.\.\. --overwrite`"):
+    with pytest.raises(SceneError, match="mesh_torques_Nm"):
         spur_scene(*SHORT, "load.mesh_torques_Nm=[1.0,2.0]")

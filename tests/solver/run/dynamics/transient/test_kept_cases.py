@@ -218,7 +218,7 @@ def test_a_case_that_cannot_be_read_is_refused(out: Path, tmp_path: Path) -> Non
     arrays = read_arrays(path)
     del arrays["energies"]
     path.write_bytes(arrays_bytes(arrays))
-    with pytest.raises(ArchiveError, match="one without 'energies'; --overwrite computes anew"):
+    with pytest.raises(ArchiveError, match="some without 'energies'; compute anew with --overwrite"):
         cases.read()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import socket
 import subprocess
 import sys
@@ -65,7 +66,7 @@ def test_command_listens_on_no_network(command: str, folder: Path) -> None:
     beyond loopback."""
     words = [sys.executable, "-m", "evolvent", *example(command)]
     if command == "run":
-        words.append("--overwrite")  # what `plot` draws
+        shutil.rmtree(folder / "out")  # what `plot` draws, which no run has written
     found, said = watched(words, folder, variables(), lambda pid: started_mpi(pid) >= PROCESSES.get(command, 1))
     assert found == set(), said
 
@@ -84,7 +85,8 @@ def documented() -> dict[str, str]:
 def test_ranks_on_one_machine_listen_on_no_network(folder: Path) -> None:
     """With README.md's variables neither rank listens beyond loopback. `mpirun` itself keeps one port open, of each
     version of IP, as the page says; a release of Open MPI that does not lets this test be made stricter."""
-    ranks = ["mpirun", "-n", "2", sys.executable, "-m", "evolvent", *example("run"), "--overwrite"]
+    ranks = ["mpirun", "-n", "2", sys.executable, "-m", "evolvent", *example("run")]
+    shutil.rmtree(folder / "out")
     settings = variables(**MPI_AS_ROOT, **documented())
     with one_at_a_time(2):
         found, said = watched(ranks, folder, settings, lambda pid: started_mpi(pid) == 2)

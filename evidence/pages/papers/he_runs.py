@@ -132,7 +132,7 @@ def in_series(wanted: float, stiffness: float) -> float:
 
 
 def series_setting(stiffness: float) -> str:
-    """Of a stiffness in series with the mesh [N/µm]."""
+    """Setting of a stiffness in series with the mesh [N/µm]."""
     return f"dynamics.series_stiffness_N_per_um={stiffness:.6g}"
 
 

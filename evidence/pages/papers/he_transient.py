@@ -109,7 +109,7 @@ def _motion(name: str, fact: dict[str, Any]) -> Named:
 
 
 def _torsional(runs: Runs) -> Named:
-    """Of both ways at each speed, on rigid and on elastic bodies: the contact is the same, and is solved once."""
+    """Figures of both ways at each speed, on rigid and on elastic bodies; their contact is the same and solved once."""
     rigid, _ = BODIES
     for bodies in BODIES:
         set_to = [f"--set={each}" for each in (*SETTINGS, f"dynamics.histories_rpm={list(SPEEDS)}",

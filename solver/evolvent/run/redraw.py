@@ -47,9 +47,9 @@ def plot_folder(out: Path) -> Drawn:
 
 def _require_finished(out: Path) -> None:
     """Raises FolderError where there is nothing to draw. os.path, unlike pathlib, takes names that no file can have."""
-    if os.path.isdir(out) and ((out / RUN).is_file() or any(picture.is_of(out) for picture in FROM_TABLES)):
-        return
     is_folder = os.path.isdir(out)
+    if is_folder and ((out / RUN).is_file() or any(picture.is_of(out) for picture in FROM_TABLES)):
+        return
     begun = begun_command(out) if is_folder else None
     missing = f"no {RUN} in it, nor all tables of another picture" if is_folder else "no such directory"
     found = missing if begun is None else f"{begun.found(out)} of `evolvent {' or '.join(begun.names)}`, but {missing}"

@@ -111,7 +111,7 @@ def test_what_is_no_object_is_said(tmp_path: Path, text: str) -> None:
 
 
 def test_a_value_of_a_scene(tmp_path: Path) -> None:
-    """Of a section; None where there is none; an error where the file is none."""
+    """Value of a section's key; None where there is none; an error where the file is no TOML."""
     (tmp_path / "scene.toml").write_text('title = "a pair"\n[dynamics]\nstiffness = 2.0\n')
     keys = "title", "dynamics.stiffness", "title.part", "x"
     assert [SceneValue("scene.toml", key).read(tmp_path) for key in keys] == ["a pair", 2.0, None, None]

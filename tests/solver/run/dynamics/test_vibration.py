@@ -61,7 +61,7 @@ def test_plot_draws_the_vibration_again(out: Path, tmp_path: Path) -> None:
 
 
 def test_warnings_are_kept(out: Path) -> None:
-    """Those that the call has returned, in dynamics.json: once, they were in the terminal alone."""
+    """Warnings that the call has returned are in dynamics.json: once, they were in the terminal alone."""
     bodies, said = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))["warnings"]
     assert bodies.startswith("gear bodies: their own vibration of")
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")

@@ -154,7 +154,8 @@ def _written(
 ) -> list[str]:
     """Writes all files, in place of those of an earlier call. On rank 0 alone."""
     folder.remove(OF_DYNAMICS)
-    return [*excitation_warnings(excitation, companion, loads), *write_excitation(folder, excitation, companion, loads)]
+    said = excitation_warnings(excitation, companion, loads)
+    return [*said, *write_excitation(folder, excitation, companion, loads, said)]
 
 
 def excitation_warnings(excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques) -> list[str]:
@@ -164,14 +165,13 @@ def excitation_warnings(excitation: MeshExcitation, companion: CoarseExcitation,
 
 
 def write_excitation(
-    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques
+    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques, said: Sequence[str]
 ) -> list[str]:
-    """Writes tables and, where it is wanted, the picture; returns a sentence where that could not be drawn. Raises
-    WriteError, FolderError."""
+    """Writes tables and, where it is wanted, the picture; returns a sentence where that could not be drawn. said:
+    `excitation_warnings`, which are kept beside the tables. Raises WriteError, FolderError."""
     scene, radius = loads.scene, loads.base_radius
     EXCITATION.write(folder, excitation_rows(excitation, radius, companion))
     HARMONICS.write(folder, harmonic_rows(excitation, radius, companion))
-    said = excitation_warnings(excitation, companion, loads)
     facts = excitation_facts(scene.title, scene.mesh.level, excitation, radius, companion, said)
     EXCITATION_FACTS.write(folder, facts)
     pictures = [EXCITATION_PICTURE] if wanted_output(scene).pictures else []

@@ -118,13 +118,14 @@ def _written(
     over_torque = _over_torque(excitation, first, vibrating, settings, section, progress)
     progress.stage(OUTPUT)
     share = largest_force(found), float(excitation.loaded.forces[-1])
-    said = *excitation_warnings(excitation, companion, loads), *doubtful(loads.scene.planned_vibration())
+    excited = excitation_warnings(excitation, companion, loads)
+    said = *excited, *doubtful(loads.scene.planned_vibration())
     said = *said, *_warnings(vibrating, settings, share, swept), *_not_followed(vibrating, swept)
     said = *said, *_branch_warnings(swept), *_not_repeating(vibrating, swept), *errors.said
     said = *said, *_iso_warnings(first, iso), *over_torque.warnings
     folder = RunFolder(out)
     folder.remove(OF_DYNAMICS)
-    failures = write_excitation(folder, excitation, companion, loads)
+    failures = write_excitation(folder, excitation, companion, loads, excited)
     RESPONSE.write(folder, response_rows(vibrating, swept, found, iso, errors))
     BRANCH.write(folder, branch_rows(vibrating, swept))
     DYNAMICS.write(folder, summary(vibrating, settings, swept, *share, iso, errors, said))

@@ -8,6 +8,7 @@ docs/studies.md.
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import random
 import signal
@@ -15,7 +16,7 @@ import subprocess
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -53,6 +54,8 @@ pair.normal_pressure_angle_deg = [20.0, 19.5]
 ORPHANS, PATIENCE = 10.0, 1200.0
 """Time in which processes end with their study; in which a study ends [s]."""
 STUDY, COMPUTING, STARTING = "the study", "workers", "workers that start"
+SAME = 1e-8
+"""Largest relative difference of a figure between two runs of a scene (docs/checks.md)."""
 LONGEST = {STUDY: 30.0, COMPUTING: 10.0, STARTING: 3.0}
 """Longest time until a process of a kind is killed, from when it is there [s]."""
 
@@ -70,7 +73,7 @@ class Outcome:
     hangs: int = 0
     """Studies that have not ended within PATIENCE."""
     differ: int = 0
-    """Tables that differ from that of a study without kills."""
+    """Tables that differ by more than `SAME` from that of a study without kills."""
     ends: int = 0
     """Studies that have ended by themselves."""
 
@@ -91,9 +94,28 @@ def killed_at_random(folder: Path, kills: int, seed: int) -> Outcome:
                 program.communicate(timeout=PATIENCE)
             if program.returncode != -signal.SIGKILL:
                 outcome.hangs += program.poll() is None
-                outcome.differ += not (program.poll() == 0 and rows(out) == wanted)
+                outcome.differ += program.poll() != 0 or bool(differing(rows(out), wanted))
                 outcome.ends += 1
     return outcome
+
+
+def differing(table: Sequence[Mapping[str, str]], wanted: Sequence[Mapping[str, str]]) -> list[str]:
+    """Cells of a table that are not those of the wanted one, numbers to `SAME`; prints them."""
+    if [list(row) for row in table] != [list(row) for row in wanted]:
+        found = [f"{len(table)} rows, wanted {len(wanted)}, or other columns"]
+    else:
+        pairs = [(name, row[name], other[name]) for row, other in zip(table, wanted) for name in row]
+        found = [f"{name}: {cell}, wanted {other}" for name, cell, other in pairs if not _same(cell, other)]
+    for each in found:
+        print(f"differs: {each}", flush=True)
+    return found
+
+
+def _same(cell: str, wanted: str) -> bool:
+    """Whether two cells are the same text, or numbers that differ by less than `SAME`."""
+    with suppress(ValueError):
+        return cell == wanted or math.isclose(float(cell), float(wanted), rel_tol=SAME)
+    return False
 
 
 def _kill(program: subprocess.Popen[str], kind: str, seconds: float, outcome: Outcome) -> None:

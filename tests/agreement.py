@@ -33,7 +33,7 @@ from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arra
 from evolvent.run.kinds.run import Run
 from evolvent_meshes.files import write_bytes
 from tests.support.gear_cases import helical_scene, spur_scene
-from tests.support.running.quiet import quietly
+from tests.support.quiet import quietly
 
 TOLERANCE = 1e-6
 NO_RESULTS = {

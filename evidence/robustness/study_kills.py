@@ -56,6 +56,8 @@ ORPHANS, PATIENCE = 10.0, 1200.0
 STUDY, COMPUTING, STARTING = "the study", "workers", "workers that start"
 GIVEN_UP = "worker processes one after the other ended while they started"
 """Part of the message of a study that gives up, see `evolvent.run.study.local_workers.STARTS`."""
+NAMED = 300
+"""Largest number of characters of a message that is printed."""
 SAME = 1e-8
 """Largest relative difference of a figure between two runs of a scene (docs/checks.md)."""
 LONGEST = {STUDY: 30.0, COMPUTING: 10.0, STARTING: 3.0}
@@ -100,6 +102,7 @@ def killed_at_random(folder: Path, kills: int, seed: int) -> Outcome:
             if GIVEN_UP in said:
                 outcome.given_up += 1
             elif program.returncode != -signal.SIGKILL:
+                print(f"ended with status {program.returncode}: {said.strip()[-NAMED:]}", flush=True)
                 outcome.hangs += program.poll() is None
                 outcome.differ += program.poll() != 0 or bool(differing(rows(out), wanted))
                 outcome.ends += 1

@@ -114,7 +114,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics.excitation", "dynamics", "dynamics.modes",
     ),
     "dynamics.results": (
-        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive", "results.error_bars",
+        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.error_bars",
         "results.tables", "gears.problem",
     ),
     "dynamics.results.transient": (
@@ -140,29 +140,31 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
-        "gears.solution", "dynamics", "dynamics.modes", "dynamics.results.*", "dynamics.figures", "scene",
-        "scene.schema", "results.*", "strength.results", "wear.*",
+        "gears.solution", "dynamics", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes.mesh", "meshes.gears", "fem.parallel", "fem.backend", "gears.problem", "gears.meshing",
-        "gears", "gears.pressure", "gears.solution", "scene.schema", "scene", "results.archive",
-        "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard", "strength.fatigue",
-        "strength", "strength.results", "run",
+        "meshes.gears", "fem.parallel", "gears.problem", "gears.meshing", "gears.solution",
+        "gears.sweep", "scene.schema", "scene", "results.archive", "results.tables", "strength.standard",
+        "strength.fatigue", "strength", "strength.results", "run",
     ),
     "run.dynamics": (
-        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
-        "gears.solution", "scene", "scene.schema", "results.archive", "results.error_bars", "results.drawing",
+        "meshes", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
+        "gears.solution", "scene", "scene.schema", "results.archive", "results.error_bars", "results.tables",
         "dynamics.*", "run",
     ),
     "run.dynamics.transient": (
-        "meshes", "meshes.gears", "fem.parallel", "fem.backend", "contact.transient.time_schemes", "gears.problem",
-        "gears.meshing", "gears", "gears.sweep", "gears.pressure", "gears.solution", "scene.schema", "scene",
-        "results.archive", "results.drawing", "dynamics", "dynamics.modes", "dynamics.transient",
-        "dynamics.results.transient", "dynamics.figures", "check", "run",
+        "meshes", "meshes.gears", "fem.parallel", "contact.transient.time_schemes", "gears.problem",
+        "gears.meshing", "gears.sweep", "scene.schema", "scene", "results.archive", "results.tables", "dynamics",
+        "dynamics.modes", "dynamics.transient", "dynamics.results.transient", "check", "run",
+    ),
+    "run.kinds": (
+        "meshes.mesh", "meshes.gears", "fem.parallel", "gears", "gears.meshing", "gears.pressure",
+        "gears.solution", "scene", "scene.schema", "results.*", "dynamics.*", "strength.*", "wear.results", "run",
+        "run.strength", "run.dynamics", "run.dynamics.transient",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",
-        "run.strength",
+        "run.strength", "run.kinds",
     ),
     "run.study.results": (
         "meshes", "meshes.gears", "scene", "check", "scene.schema", "scene.schema.guesses", "results.archive",
@@ -171,7 +173,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "run.study.figures": ("meshes", "results.drawing", "run.study.results"),
     "run.study": (
         "meshes", "fem.backend", "gears", "gears.sweep", "dynamics.excitation", "scene", "check", "results.archive",
-        "results.drawing", "strength.results", "run", "run.dynamics", "run.strength", "run.study.plan",
+        "results.drawing", "run", "run.dynamics", "run.kinds", "run.study.plan",
         "run.study.results", "run.study.figures", "dynamics",
     ),
     "commands": (

@@ -23,13 +23,12 @@ from tests.support.scene_texts import HE
 
 COMMANDS = ("run", "check", "mesh", "plot", "info")
 FAILING = """
-    import sys, types
-    run = types.ModuleType("evolvent.run.scene_run")
-    def run_scene(scene, out, **options):
+    import sys
+    from evolvent.run import compute
+    def computed(what, out, options):
         from mpi4py import MPI
         {body}
-    run.run_scene = run_scene
-    sys.modules["evolvent.run.scene_run"] = run
+    compute.compute = computed
     from evolvent.commands.app import main
     sys.exit(main(["run", {scene!r}, "--out", {out!r}]))
 """
@@ -45,7 +44,7 @@ def scene(tmp_path: Path) -> Path:
 
 
 def run_with(body: str, scene: Path, ranks: int = 1) -> subprocess.CompletedProcess[str]:
-    """`evolvent run` in a process of its own, with run_scene's body replaced; `body` is one line."""
+    """`evolvent run` in a process of its own, with the body of `compute` replaced; `body` is one line."""
     code = textwrap.dedent(FAILING).format(body=body, scene=str(scene), out=str(scene.parent / "out"))
     mpirun = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
     root = {f"{name}_ALLOW_RUN_AS_ROOT{tail}": "1" for name in ("OMPI", "PRTE") for tail in ("", "_CONFIRM")}

@@ -27,8 +27,8 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.skips import skip_named
 from tests.support.gear_cases import HELICAL
+from tests.support.quiet import quietly
 from tests.support.running.processes import BROKEN_RUN, RunScript
-from tests.support.running.quiet import quietly
 
 SMALL = (
     "mesh.order=2", "mesh.elements_per_contact_width=0.8", "pinion.face_width_mm=4", "wheel.face_width_mm=4",

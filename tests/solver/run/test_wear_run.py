@@ -32,7 +32,9 @@ WEAR = (
 )
 
 
-def computed(run_script: RunScript, out: Path, *settings: str, how: str = "ok", ranks: int = 1, scene: str = SPUR) -> int:
+def computed(
+    run_script: RunScript, out: Path, *settings: str, how: str = "ok", ranks: int = 1, scene: str = SPUR
+) -> int:
     """The status of a run."""
     done = run_script(BROKEN_RUN, how, scene, "--out", str(out), *QUIET, *settings, ranks=ranks)
     assert how != "ok" or done.returncode == 0, done.stderr

@@ -29,9 +29,9 @@ from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import SKIPS, one_mesh_reason, skip_named, skipped, switched_off
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
+from tests.support.quiet import quietly
 from tests.support.running.patches import calling_first
 from tests.support.running.processes import RunScript
-from tests.support.running.quiet import quietly
 from tests.support.scene_texts import WEAR
 
 SPUR = ("pair.helix_angle_deg=0", "mesh.order=2", "mesh.elements_per_contact_width=2")

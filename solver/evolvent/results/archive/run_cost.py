@@ -71,7 +71,7 @@ def read_cost(folder: RunFolder) -> Cost:
         with open_file(path) as file:
             values = json.load(file)
         seconds = [float(values["timings"][field.name]) for field in fields(Timings)]
-        return Cost(Timings(*seconds), float(values["memory_MB"]), str(values.get("command", BEFORE)))
+        return Cost(Timings(*seconds), float(values["memory_MB"]), str(values.get("command") or BEFORE))
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ArchiveError(
             f"{path}: wanted what the run has cost so far, found no such thing ({type(error).__name__}: {error}); "

@@ -127,5 +127,5 @@ def kind_named(name: str) -> Kind:
 
 
 def kind_of(command: str, scene: Scene) -> Kind:
-    """What a command computes of a scene: `run` computes the wear of flanks where the scene has a section [wear]."""
+    """The computation that a command makes of a scene: `run` is wear where the scene has a section [wear]."""
     return kind_named("wear" if command == "run" and scene.wear is not None else command)

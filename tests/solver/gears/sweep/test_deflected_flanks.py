@@ -160,7 +160,9 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def solved(run_script: RunScript, scene: Path, out: Path, *how: str, ranks: int = 1, resume: bool = False) -> dict[str, Any]:
+def solved(
+    run_script: RunScript, scene: Path, out: Path, *how: str, ranks: int = 1, resume: bool = False
+) -> dict[str, Any]:
     """The summary of a run; the first of `how` is what to break."""
     settings = "sweep.positions=4", "contact.friction=[0.0, 0.1]"
     more = [*(f"--set={setting}" for setting in settings), *how[1:], *(["--resume"] if resume else [])]

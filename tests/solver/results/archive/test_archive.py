@@ -151,7 +151,9 @@ def test_resuming_another_scene_changes_nothing(ranks: int, whole: Path, run_scr
     assert snapshot(whole) == before
 
 
-def test_overwriting_run_removes_files_of_the_earlier_run_only(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
+def test_overwriting_run_removes_files_of_the_earlier_run_only(
+    whole: Path, run_script: RunScript, tmp_path: Path
+) -> None:
     """Another scene into a used folder with --overwrite, killed after its second position: only its own results are
     there, files that are not Evolvent's stay, and --resume goes on with it."""
     out = tmp_path / "out"

@@ -42,8 +42,8 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.splitting import halved
 from evolvent_meshes.sector.section import SectorResolution
 from tests.support.gear_cases import spur_scene
+from tests.support.quiet import quietly
 from tests.support.running.processes import BROKEN_RUN, RunScript
-from tests.support.running.quiet import quietly
 from tests.support.synthetic_run import synthetic_run
 
 SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4",

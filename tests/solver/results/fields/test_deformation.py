@@ -19,7 +19,7 @@ from evolvent.results.fields.deformation import Deformation
 from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import Scene
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
-from tests.support.running.quiet import quietly
+from tests.support.quiet import quietly
 
 Case = tuple[GearModel, list[SweptPosition], Deformation]
 

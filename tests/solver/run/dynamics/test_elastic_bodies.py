@@ -14,7 +14,7 @@ from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
-from tests.support.running.quiet import quietly
+from tests.support.quiet import quietly
 
 SPEEDS = (4000.0, 6000.0)
 

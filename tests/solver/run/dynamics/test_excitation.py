@@ -23,8 +23,8 @@ from evolvent.scene.scene import SceneError
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.gear_cases import model_of, spur_scene, swept
+from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 SETTINGS = "mesh.level=quick", "output.pictures=true", "sweep.positions=6"

@@ -21,7 +21,7 @@ from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
-from tests.support.running.quiet import quietly
+from tests.support.quiet import quietly
 
 
 def scene(*settings: str) -> Scene:

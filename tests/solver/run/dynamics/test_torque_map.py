@@ -28,7 +28,7 @@ from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.arrays import Floats
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET, spur_scene
-from tests.support.running.quiet import quietly
+from tests.support.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 PHASES = np.arange(12) / 12

@@ -25,8 +25,8 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
+from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 SETTINGS = (

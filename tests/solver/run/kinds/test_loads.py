@@ -17,7 +17,7 @@ from evolvent.run.kinds.loads import Loads
 from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import SceneError, load_scene
 from tests.support.gear_cases import spur_scene
-from tests.support.running.quiet import quietly
+from tests.support.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 SHORT = (

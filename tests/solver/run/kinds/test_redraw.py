@@ -69,7 +69,8 @@ def test_unfinished_command_is_named(tmp_path: Path, kind: Kind) -> None:
     folder, wearing = RunFolder(tmp_path), WEAR if kind.name == "wear" else ()
     write_scene(load_scene(ROOT / "demos/he2022.toml", ["contact.friction=[0.1]", *wearing]), folder)
     write_cost(folder, Cost(command=kind.command))
-    with pytest.raises(FolderError, match=re.escape(f"run `evolvent {kind.command} SCENE.toml --out {tmp_path} --resume`")):
+    remedy = f"run `evolvent {kind.command} SCENE.toml --out {tmp_path} --resume`"
+    with pytest.raises(FolderError, match=re.escape(remedy)):
         plot_folder(tmp_path)
 
 

@@ -15,8 +15,8 @@ from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent.scene.schema.fatigue import NEEDED, FatigueSection
 from evolvent.strength.fatigue.criterion import SHALLOW
 from tests.support.checkout import ROOT
+from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 SETTINGS = (

@@ -19,8 +19,8 @@ from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
+from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 GAUGE = (
@@ -53,7 +53,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_relieved_tips_that_do_not_bear_are_no_warning(tmp_path: Path) -> None:
     """Nothing is said of gears with tip relief whose edges do not bear."""
     relieved = "pinion.tip_relief_um=60", "wheel.tip_relief_um=60", "output.error_bars=false", "output.pictures=false"
-    assert not any("Tip-edge contact" in each or "No tip" in each for each in quietly(Strength.of(scene("sweep.positions=4", *relieved)), tmp_path))
+    said = quietly(Strength.of(scene("sweep.positions=4", *relieved)), tmp_path)
+    assert not any("Tip-edge contact" in each or "No tip" in each for each in said)
 
 
 def test_plot_draws_root_stress_again(out: Path, tmp_path: Path) -> None:

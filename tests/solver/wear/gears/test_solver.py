@@ -13,7 +13,7 @@ from evolvent.wear import Archard, BlockSettings, wear_study, wearing_pair
 from evolvent.wear.results.archive import read_checkpoint
 from tests.support.gear_cases import spur_scene
 from tests.support.gears_api_curve import he_problem
-from tests.support.running.quiet import quietly
+from tests.support.quiet import quietly
 
 WEAR = (
     "wear.cycles=4e4", "wear.pinion_mm2_per_N=1e-10", "wear.wheel_mm2_per_N=3e-10", "wear.report_at_cycles=2e4",

@@ -18,7 +18,7 @@ from evolvent.scene.schema.errors import InputProblem, key_problem, problems_of,
 from evolvent.scene.schema.section import SceneSection, key
 
 COMPUTATIONS = ("check", *(kind.name for kind in KINDS if kind.in_studies))
-"""What a study can compute of each scene."""
+"""Computations that a study can make of each scene."""
 MOST_SCENES = 1_000_000
 """Largest number of scenes of a study."""
 PARTS = "grid", "list", "latin_hypercube.ranges"

@@ -8,6 +8,7 @@ from dataclasses import fields
 from evolvent.dynamics.results.curves import LOADED, SECANT, TANGENT
 from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
 from evolvent.dynamics.results.tables import HARMONICS
+from evolvent.dynamics.results.transient.rows import TRANSIENT
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.run.study.plan.study_file import StudyFile
 from evolvent.run.study.results.check_figures import CHECK, CheckFigures
@@ -15,6 +16,16 @@ from evolvent.run.study.results.gathering import ERROR, Figure
 from evolvent.run.study.results.study_table import OWN
 from evolvent.scene.schema.errors import InputProblem, SceneError
 from evolvent.scene.schema.guesses.nearest_key import nearest_key
+from evolvent.strength.fatigue.criterion import (
+    BELOW,
+    CONTACT_PRESSURE,
+    DANG_VAN,
+    MAXIMUM_SHEAR,
+    SURFACE,
+    VON_MISES,
+    Criterion,
+)
+from evolvent.strength.results.fatigue_rows import FATIGUE
 from evolvent.strength.results.tables import COMPRESSION, STANDARD, STRENGTH, TENSION
 from evolvent_meshes.gears.member import Member
 
@@ -79,6 +90,27 @@ def _of_strength() -> list[Figure]:
     return found
 
 
+def _of_transient() -> list[Figure]:
+    def over_cases(name: str, column: str, statistic: str = "max") -> Figure:
+        return Figure(name, TRANSIENT.name, column, statistic=statistic)
+
+    return [
+        over_cases("largest_mesh_force_N", "mesh_force_N"),
+        over_cases("transmission_error_peak_to_peak_um", "transmission_error_um", "peak_to_peak"),
+        over_cases("largest_pressure_MPa", "max_pressure_MPa"),
+    ]
+
+
+def _of_fatigue() -> list[Figure]:
+    def of(gear: str, name: str, criterion: Criterion, place: str) -> Figure:
+        where: dict[str, str | int | float] = {"gear": gear, "criterion": criterion.name, "place": place}
+        return Figure(f"{gear}_{name}_MPa", FATIGUE.name, "value", where=where, error=f"value{ERROR}")
+
+    shown = (("contact_pressure", CONTACT_PRESSURE, SURFACE), ("maximum_shear", MAXIMUM_SHEAR, BELOW),
+             ("von_mises", VON_MISES, BELOW), ("dang_van", DANG_VAN, BELOW))
+    return [of(member.label, *each) for member in Member for each in shown]
+
+
 def _of_wear() -> list[Figure]:
     found = []
     for gear in (member.label for member in Member):
@@ -91,7 +123,7 @@ def _of_wear() -> list[Figure]:
 
 CATALOGUE: Mapping[str, list[Figure]] = {
     "check": _of_check(), "run": _of_run(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
-    "strength": _of_strength(), "wear": _of_wear(),
+    "transient": _of_transient(), "strength": _of_strength(), "fatigue": _of_fatigue(), "wear": _of_wear(),
 }
 """Computation -> named figures that its scenes have."""
 DEFAULTS: Mapping[str, tuple[str, ...]] = {
@@ -103,6 +135,8 @@ DEFAULTS: Mapping[str, tuple[str, ...]] = {
     "dynamics": ("largest_dynamic_factor", "largest_equivalent_amplitude_um", "natural_speed_rpm"),
     "strength": tuple(f"{gear}_{name}_MPa" for gear in ("pinion", "wheel") for name in ("tension", "compression",
                                                                                       "ISO_2006", "ISO_2019")),
+    "transient": ("largest_mesh_force_N", "transmission_error_peak_to_peak_um", "largest_pressure_MPa"),
+    "fatigue": tuple(f"{gear}_{name}_MPa" for gear in ("pinion", "wheel") for name in ("contact_pressure", "dang_van")),
     "wear": ("pinion_deepest_um", "wheel_deepest_um", "worn_max_pressure_MPa",
              "worn_transmission_error_peak_to_peak_um"),
 }

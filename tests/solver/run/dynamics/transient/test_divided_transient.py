@@ -14,8 +14,8 @@ from evolvent.run.dynamics.transient.kept_cases import KeptCases
 from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
+from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.quiet import quietly
 
 POSITIONS, TOLERANCE = 10, 0.008
 TABLES = "transient.csv", "transient_teeth.csv", "transient.json"

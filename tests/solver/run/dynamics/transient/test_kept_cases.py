@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import json
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +15,9 @@ from evolvent.run.dynamics.transient.kept_cases import KeptCases, another
 from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
+from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.quiet import quietly
+from tests.support.same_tables import same_tables
 
 TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
 SETTINGS = (
@@ -52,22 +51,6 @@ def stopped(*given: object) -> None:
 
 def scene(*settings: str) -> Scene:
     return load_scene(ROOT / "demos/he2022.toml", [*SETTINGS, *settings])
-
-
-def same_tables(one: Path, other: Path) -> bool:
-    """Whether both folders have the same tables, but for the last digits: products of matrices round by where these lie
-    in memory."""
-    return all(values(one / name) == pytest.approx(values(other / name), rel=1e-6, abs=1e-7) for name in TABLES)
-
-
-def values(path: Path) -> list[float]:
-    """All numbers of a table, those that are not known as −1."""
-    text = path.read_text(encoding="utf-8")
-    if path.suffix == ".csv":
-        cells = [cell for row in csv.reader(text.splitlines()[1:]) for cell in row]
-    else:
-        cells = [value for fact in json.loads(text) for value in fact.values()]
-    return [-1.0 if cell in ("", None, "nan") else float(cell) for cell in cells]
 
 
 def kept(folder: Path) -> list[str]:

@@ -15,8 +15,8 @@ from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
+from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 POSITIONS = 40
@@ -101,7 +101,8 @@ def test_from_statics_there_is_no_such_table(tmp_path: Path) -> None:
     """Nor a line of it, nor one that an earlier call has left."""
     quietly(Transient.of(scene('transient.start="rest"', *PLAIN)), tmp_path / "x")
     assert (tmp_path / "x/transient_start.csv").exists()
-    said = quietly(Transient.of(scene("dynamics.series_stiffness_N_per_um=700", *PLAIN)), tmp_path / "x", overwrite=True)
+    stiff = scene("dynamics.series_stiffness_N_per_um=700", *PLAIN)
+    said = quietly(Transient.of(stiff), tmp_path / "x", overwrite=True)
     assert not (tmp_path / "x/transient_start.csv").exists()
     assert "from rest" not in "".join(summary_lines(tmp_path / "x"))
     assert any(line.startswith("dynamics.series_stiffness_N_per_um: not in a transient") for line in said)

@@ -21,8 +21,8 @@ from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
+from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 POSITIONS = 10

@@ -14,5 +14,5 @@ from evolvent.run.compute import compute
 def quietly(
     what: Computation[Any], out: Path, resume: bool = False, overwrite: bool = False, prepare: Preparer = prepare_model
 ) -> list[str]:
-    """See `compute`."""
+    """Computes a scene into a folder; returns the warnings. Parameters as in `Options`."""
     return compute(what, out, Options(resume, overwrite, quiet=True, prepare=prepare))

@@ -47,7 +47,7 @@ class SpurMesh:
 
     def scene(self) -> Scene:
         """He's pair with this section."""
-        off = ['skip.off=["coarse-body"]'] if self.fine_body else []
+        off = ['exact.parts=["coarse-body"]'] if self.fine_body else []
         return spur_pair("mesh.level=quick", f"mesh.elements_per_contact_width={self.elements}", *off)
 
 

@@ -17,9 +17,9 @@ import typer
 from evolvent.commands.command import Command
 from evolvent.commands.exit import STATUSES, reported
 from evolvent.commands.options import (
+    ExactParts,
     Force,
     LevelOption,
-    NoSkip,
     Overrides,
     Overwrite,
     Percents,
@@ -49,7 +49,7 @@ class Call:
     """Scene and options of a command line."""
 
     scene: Scene
-    """Scene with --level, --set and --no-skip."""
+    """Scene with --level, --set and --exact."""
     source: Path
     """Path of the scene file."""
     out: Path
@@ -201,7 +201,7 @@ def _command(
         percents: Percents = (),
         level: LevelOption = None,
         settings: Overrides = None,
-        no_skip: NoSkip = None,
+        exact: ExactParts = None,
         force: Force = False,
         resume: Resume = False,
         overwrite: Overwrite = False,
@@ -209,7 +209,7 @@ def _command(
         petsc: PetscOptions = None,
     ) -> None:
         with reported(parallel=True, advice=resuming):
-            loaded = loaded_scene(scene, level, settings, no_skip, world())
+            loaded = loaded_scene(scene, level, settings, exact, world())
             require(not (resume and overwrite), BOTH)
             if petsc is not None:
                 os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts

@@ -15,7 +15,7 @@ from evolvent.fem.parallel.ranks import on_first
 from evolvent.results.archive.run_folder import LOG, FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.archive.scene_files import SCENE_FILES, scene_texts
-from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.scene import GEARS, Scene, kept_scene
 
 COMPUTED = ("results/state.npz", "results/wear.npz", "summary.json")
 """Files with results: one of them exists as soon as anything has been computed."""
@@ -130,7 +130,9 @@ def _keep_sources(scene: Scene, folder: RunFolder, source: Path | None) -> None:
     """Raises FolderError where the run would change a file that the scene is read from."""
     charts = [getattr(scene, name).flank_csv for name in GEARS]
     sources = [path for path in (source, *(Path(chart) for chart in charts if chart)) if path is not None]
-    texts = scene_texts(scene)
+    texts, kept = scene_texts(scene), folder.out / "scene.toml"
+    if kept in sources and folder.is_written(kept) and scene_texts(kept_scene(kept)) == texts:
+        return  # this scene as a run has written it, perhaps with the names of an earlier version
     for name in SCENE_FILES:
         path = folder.out / name
         same = [source for source in sources if path.exists() and source.exists() and os.path.samefile(path, source)]

@@ -149,7 +149,7 @@ def _write_operation(run: RunContext, scene: Scene, operation: Operation) -> Non
         assert scene.dynamics is not None
         loaded = gear_problem(scene)
         radius = loaded.pair.gears[loaded.torque_on].base_radius
-        write_operation(run.folder, operation, scene.dynamics.coming, radius)
+        write_operation(run.folder, operation, scene.dynamics.direction, radius)
         if wanted_output(scene).pictures:
             log_pictures(draw(from_tables([OPERATION_PICTURE], run.folder.out), run.folder), run.log)
 

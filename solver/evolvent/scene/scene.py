@@ -13,6 +13,7 @@ from typing import Any, Self
 
 from pydantic import BaseModel, ValidationError, model_validator
 
+from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.fem.material import Material
 from evolvent.gears.problem.flank_deviations import DEEPEST, FlankChart
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
@@ -27,7 +28,8 @@ from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, 
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.schema.gears import GearSection, PairSection
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
-from evolvent.scene.schema.output import OutputSection, SkipSection
+from evolvent.scene.schema.old_names import Warn, new_sections, unsaid
+from evolvent.scene.schema.output import ExactSection, OutputSection
 from evolvent.scene.schema.section import SceneSection, key
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.schema.wear import WearSection
@@ -36,7 +38,7 @@ from evolvent_meshes.csv_tables import TableError
 from evolvent_meshes.gears.member import MemberName
 from evolvent_meshes.gears.pair import GearPair
 
-__all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
+__all__ = ["Scene", "SceneError", "kept_scene", "load_scene", "scene_from_text", "scene_from_values"]
 
 GEARS: tuple[MemberName, MemberName] = ("pinion", "wheel")
 
@@ -65,7 +67,7 @@ class Scene(SceneSection):
     strength: StrengthSection | None = None
     fatigue: FatigueSection | None = None
     output: OutputSection = OutputSection()
-    skip: SkipSection = SkipSection()
+    exact: ExactSection = ExactSection()
 
     @model_validator(mode="after")
     def _keys_have_an_effect(self) -> Self:
@@ -161,9 +163,9 @@ class Scene(SceneSection):
             raise validation_error(InputProblem("contact.friction", found, allowed, remedy))
         needed = ("one-pitch", "one pitch is one tooth's passage"), ("deflected-flanks", "they wear undeflected")
         for name, why in needed:
-            if self.wear is not None and name in self.skip.off:
-                allowed = f"the other skips where the flanks wear: {why}"
-                raise validation_error(InputProblem("skip.off", shown(self.skip.off), allowed, f"leave {name} out"))
+            if self.wear is not None and name in self.exact.parts:
+                found, allowed = shown(self.exact.parts), f"the other parts where the flanks wear: {why}"
+                raise validation_error(InputProblem("exact.parts", found, allowed, f"leave {name} out"))
         return self
 
     def flank_chart(self, name: MemberName) -> FlankChart | None:
@@ -269,17 +271,28 @@ def _toml_value(value: object) -> str:
     return repr(value)
 
 
-def load_scene(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
+def future_warning(sentence: str) -> None:
+    """Warns at the user's line of what a later version may not accept."""
+    warn_user(sentence, FutureWarning)
+
+
+def load_scene(path: Path | str, overrides: Sequence[str] = (), warn: Warn = future_warning) -> Scene:
     """Reads, overrides and validates a scene file.
 
-    overrides: "section.key=value" with a TOML value, as `--set` takes them. Raises SceneError.
+    overrides: "section.key=value" with a TOML value, as `--set` takes them. warn: is given a sentence on each old name
+    of a key or value. Raises SceneError.
     """
     path = Path(path)
-    return scene_from_text(scene_text(path), overrides, str(path), path.parent)
+    return scene_from_text(scene_text(path), overrides, str(path), path.parent, warn)
+
+
+def kept_scene(path: Path) -> Scene:
+    """The scene that a run has written, by whatever names its version had. Raises SceneError."""
+    return load_scene(path, warn=unsaid)
 
 
 def scene_from_text(
-    text: str, overrides: Sequence[str] = (), source: str = "", folder: Path = Path()
+    text: str, overrides: Sequence[str] = (), source: str = "", folder: Path = Path(), warn: Warn = future_warning
 ) -> Scene:
     """A scene from TOML text; see load_scene.
 
@@ -287,14 +300,14 @@ def scene_from_text(
     current folder.
     """
     try:
-        return scene_from_values(nested_values(text, overrides, folder))
+        return scene_from_values(nested_values(text, overrides, folder, warn))
     except SceneError as error:
         raise SceneError(error.problems, source) from error.__cause__
 
 
-def scene_from_values(values: Mapping[str, Any]) -> Scene:
+def scene_from_values(values: Mapping[str, Any], warn: Warn = future_warning) -> Scene:
     """A scene from nested dictionaries; see load_scene."""
     try:
-        return Scene.model_validate(dict(values))
+        return Scene.model_validate(new_sections(values, warn))
     except ValidationError as error:
         raise SceneError(problems_of(error, Scene)) from error

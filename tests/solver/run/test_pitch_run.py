@@ -74,7 +74,7 @@ def test_position_out_of_balance_is_not_archived(run: RunContext, monkeypatch: p
 
 def test_finished_friction_groups_are_not_solved_again(run: RunContext, prepared: list[int]) -> None:
     """Coefficients with gears of their own, resumed at their end: no gear is condensed again."""
-    scene = scene_of("contact.friction=[0.0, 0.2]", "skip.off=reuse")
+    scene = scene_of("contact.friction=[0.0, 0.2]", "exact.parts=reuse")
     sweep_scene(run, scene, None)
     end = resume_point(scene, run.archive(scene), True)
     assert len(prepared) == 2 and end is not None and end.is_end
@@ -97,7 +97,7 @@ def test_unbalanced_pitch_is_solved_again_on_the_same_gears(
 def test_friction_coefficients_in_groups_give_the_same_pitch(tmp_path: Path, prepared: list[int]) -> None:
     """Two coefficients, each solved with gears of its own: the transmission errors of both together within 1e-8."""
     errors = []
-    for name, settings in (("together", ()), ("alone", ("skip.off=reuse",))):
+    for name, settings in (("together", ()), ("alone", ("exact.parts=reuse",))):
         scene = scene_of("contact.friction=[0.0, 0.2]", *settings)
         with run_context(RunFolder(tmp_path / name), MPI.COMM_SELF, resume=False, quiet=True, begin=0.0) as run:
             sweep_scene(run, scene, None)

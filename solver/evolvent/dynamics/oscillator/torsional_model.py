@@ -38,7 +38,7 @@ class TorsionalModel:
     """Number of teeth of the pinion, from which messages state its speed; None: they state the mesh period."""
     damping: float = 0.0
     """Damping c of the mesh [N·s/mm]."""
-    damped_apart: bool = False
+    damping_in_separation: bool = False
     """Whether c acts in free flight, too, as it does in He et al. (Eq. 15); then with ė of the loaded flanks wherever
     flanks touch."""
     ground_damping: float = 0.0
@@ -61,7 +61,7 @@ class TorsionalModel:
     def oscillator(self) -> Oscillator:
         """Parameters of the equation of motion for compiled code."""
         return Oscillator(
-            float(self.mass), float(self.damping), bool(self.damped_apart), float(self.ground_damping),
+            float(self.mass), float(self.damping), bool(self.damping_in_separation), float(self.ground_damping),
             float(self.load), self.law.front, self.law.back,
         )
 

@@ -12,12 +12,14 @@ from evolvent.results.tables.table import Record
 OPERATION = Record("operation.json", OperationFacts)
 
 
-def write_operation(folder: RunFolder, operation: Operation, coming: str, radius: float) -> None:
-    """Writes excitation.csv, harmonics.csv, histories.csv and operation.json. coming: up or down; radius: base radius
-    of the gear with the torque [mm]. Raises WriteError, FolderError."""
+def write_operation(folder: RunFolder, operation: Operation, direction: str, radius: float) -> None:
+    """Writes excitation.csv, harmonics.csv, histories.csv and operation.json.
+
+    direction: up or down. radius: base radius of the gear with the torque [mm]. Raises WriteError, FolderError.
+    """
     figures = OperationFacts.of(operation)
     EXCITATION.write(folder, excitation_rows(operation.excitation, radius))
     HARMONICS.write(folder, harmonic_rows(operation.excitation, radius))
-    motion = Motion(figures.speed_rpm, coming, operation.period, operation.repeats, operation.paths)
+    motion = Motion(figures.speed_rpm, direction, operation.period, operation.repeats, operation.paths)
     HISTORIES.write(folder, history_rows([motion]))
     OPERATION.write(folder, figures)

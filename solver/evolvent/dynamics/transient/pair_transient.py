@@ -173,7 +173,7 @@ class PairTransient:
         this damping or without. Where flanks that would touch without are kept apart by the damping alone, they touch
         without it."""
         first = ended(guess)
-        if self.pair.damped_apart or first.touches is guess:
+        if self.pair.damping_in_separation or first.touches is guess:
             return first
         other = ended(not guess)
         return other if guess or other.touches else first

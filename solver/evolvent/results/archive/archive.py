@@ -25,7 +25,8 @@ from evolvent.results.archive.position_arrays import archived_result, result_arr
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Arrays, Store, read_as
 from evolvent.scene.differences import charts, differences, essence
-from evolvent.scene.scene import Scene, SceneError, derived_values, load_scene
+from evolvent.scene.scene import Scene, SceneError, derived_values, kept_scene
+from evolvent.scene.schema.old_names import first_names
 from evolvent_meshes.gears.pair import GearPair
 
 STATE = "results/state.npz"
@@ -104,7 +105,7 @@ class Archive:
         """The scene to which the archive belongs, by its difference to this one, from OUT/scene.toml."""
         path = self.out / "scene.toml"
         try:
-            difference = differences(load_scene(path), self.scene)
+            difference = differences(kept_scene(path), self.scene)
         except SceneError:
             return f"another one, or of another version of Evolvent ({path} cannot be read)"
         if difference:
@@ -117,9 +118,10 @@ class Archive:
 
 def fingerprint(scene: Scene) -> str:
     """SHA-256 of all that the results depend on: the scene's values without its title and output section, and the
-    contents, not the paths, of its flank charts."""
+    contents, not the paths, of its flank charts. Keys have their first names: archives of earlier versions stay valid.
+    """
     bare = essence(scene)
-    values = json.dumps([bare.model_dump(mode="json"), derived_values(bare), *charts(scene)])
+    values = json.dumps([first_names(bare.model_dump(mode="json")), derived_values(bare), *charts(scene)])
     return hashlib.sha256(values.encode()).hexdigest()
 
 

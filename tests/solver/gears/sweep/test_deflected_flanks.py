@@ -174,7 +174,7 @@ def solved(run_script: Run, scene: Path, out: Path, *how: str, ranks: int = 1, r
 @pytest.fixture(scope="module")
 def asked(scene: Path, run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Solved on deflected flanks because it is asked for."""
-    return solved(run_script, scene, tmp_path_factory.mktemp("asked"), "ok", "--no-skip=deflected-flanks")
+    return solved(run_script, scene, tmp_path_factory.mktemp("asked"), "ok", "--exact=deflected-flanks")
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
@@ -185,7 +185,7 @@ def test_a_pitch_out_of_balance_is_solved_again_on_deflected_flanks(
     summary and the log say so."""
     found = solved(run_script, scene, tmp_path, "strict", ranks=ranks)
     assert differences(asked, found).largest < 1e-8
-    assert found["scene"]["skip"]["off"] == ["deflected-flanks"]
+    assert found["scene"]["exact"]["parts"] == ["deflected-flanks"]
     assert "deflected-flanks" not in {skip["name"] for skip in found["skipped"]}
     log = (tmp_path / "run.log").read_text(encoding="utf-8")
     assert "wanted an energy balance within 0.002 of the input, found" in log

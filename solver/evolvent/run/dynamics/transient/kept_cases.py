@@ -33,7 +33,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import Arrays, Store
 from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.scene.differences import differences
-from evolvent.scene.scene import Scene, SceneError, load_scene
+from evolvent.scene.scene import Scene, SceneError, kept_scene
 from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.gears.pair import GearPair
 
@@ -132,7 +132,7 @@ def another(scene: Scene, path: Path) -> str:
     """Message on an archived case or on static positions of another scene than this one, with the keys that differ from
     the scene of the last call that has ended."""
     try:
-        differing = differences(load_scene(path.parent.parent / TRANSIENT_SCENE.name), scene)
+        differing = differences(kept_scene(path.parent.parent / TRANSIENT_SCENE.name), scene)
     except SceneError:  # no call has ended there
         differing = ""
     difference = f": this one has {differing}" if differing else ""

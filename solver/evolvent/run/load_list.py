@@ -9,7 +9,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.load_list import LoadList
+from evolvent.gears.shared_gears import SharedGears
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
@@ -53,7 +53,7 @@ def run_loads(
                     resume_point(solved, Archive(out / name, solved, "loads"), resume)
 
     on_first(comm, check)
-    gears = LoadList([gear_problem(each) for each in scenes.values()])
+    gears = SharedGears([gear_problem(each) for each in scenes.values()])
     for name, each in scenes.items():
         run_scene(each, out / name, resume, quiet, overwrite, source, gears.prepare)
     return on_first(comm, lambda: _written(out, list(scenes)))

@@ -92,8 +92,8 @@ def test_where_flanks_part_a_least_force_is_left() -> None:
     found = operation(0.92 * operation(4000.0).drive.natural_speed, "down")
     course = found.load.course
     assert course is not None
-    assert found.paths[0].apart > 0.05
-    assert found.lifted == pytest.approx(found.paths[0].apart, abs=0.02)
+    assert found.paths[0].separated_share > 0.05
+    assert found.lifted == pytest.approx(found.paths[0].separated_share, abs=0.02)
     assert course.shares.min() == LEAST_FORCE
 
 

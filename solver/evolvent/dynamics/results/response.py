@@ -234,8 +234,8 @@ def response_rows(
                 **{f"force_harmonic_{r}_N": float(size) for r, size in enumerate(each.force, 1)},
                 largest_force_N=each.largest_force, smallest_force_N=each.smallest_force,
                 dynamic_factor=each.largest_force / drive.model.load, dynamic_factor_error=float(factor_error),
-                dynamic_factor_iso=iso.factor(speed), separated_share=each.apart, back_contact_share=each.behind,
-                near_body_vibration=near_body_vibration(drive, speed),
+                dynamic_factor_iso=iso.factor(speed), separated_share=each.separated_share,
+                back_contact_share=each.back_contact_share, near_body_vibration=near_body_vibration(drive, speed),
             )
 
 

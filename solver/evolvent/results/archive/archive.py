@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep.friction_history import FrictionHistory
 from evolvent.gears.sweep.periodic_pitch import one_pitch
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
@@ -139,11 +139,11 @@ def _position(arrays: Arrays, pair: GearPair) -> SweptPosition:
 
 
 def _state_arrays(complete: int, state: SweepState) -> Arrays:
-    arrays: Arrays = {"complete": complete, "extra": np.array(state.extra), "memories": len(state.histories)}
+    arrays: Arrays = {"complete": complete, "extra": np.array(state.beyond_nominal), "memories": len(state.histories)}
     for i, history in enumerate(state.histories):
         if history is not None:
             arrays |= {
-                f"{i}/angle": history.stand.angle, f"{i}/extra": np.array(history.stand.extra),
+                f"{i}/angle": history.stand.angle, f"{i}/extra": np.array(history.stand.beyond_nominal),
                 f"{i}/pinion_rows": history.rows[0], f"{i}/wheel_rows": history.rows[1],
                 f"{i}/pinion_forces": history.forces[0], f"{i}/wheel_forces": history.forces[1],
                 f"{i}/flux": history.flux,
@@ -161,7 +161,7 @@ def _state(arrays: Arrays, pair: GearPair) -> SweepState:
 
 def _history(arrays: Arrays, start: str, pair: GearPair) -> FrictionHistory:
     extra = arrays[start + "extra"]
-    stand = Stand(pair, float(arrays[start + "angle"]), (float(extra[0]), float(extra[1])))
+    stand = PairRotation(pair, float(arrays[start + "angle"]), (float(extra[0]), float(extra[1])))
     rows = arrays[start + "pinion_rows"], arrays[start + "wheel_rows"]
     forces = arrays[start + "pinion_forces"], arrays[start + "wheel_forces"]
     return FrictionHistory(stand, rows, forces, arrays[start + "flux"])

@@ -112,6 +112,6 @@ def test_no_backlash(speed: float) -> None:
     found = y
     for _ in range(3):
         path = history(model, period, found, np.linspace(0.0, 1.0, 200))
-        assert path.behind > 0.1 and path.apart < 1e-12
+        assert path.back_contact_share > 0.1 and path.separated_share < 1e-12
         found, _ = period_map(model, period, found)
     assert found / scale == pytest.approx(integrate(model, period, y, 3) / scale, abs=1e-8)

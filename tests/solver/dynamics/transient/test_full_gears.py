@@ -188,7 +188,7 @@ class WholePair:
         return self._bent(before.results[0]), self._bent(now.results[0])
 
     def _bent(self, result: PositionResult) -> Floats:
-        ψ = self.fast.pair.drive.of(result.stand.extra, self.fast.pair.base_radii)
+        ψ = self.fast.pair.drive.of(result.stand.beyond_nominal, self.fast.pair.base_radii)
         return np.append(np.concatenate([gear.bent(result) for gear in self.gears]), ψ)
 
 

@@ -18,7 +18,7 @@ from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransie
 from evolvent.dynamics.transient.start_from_rest import start_from_rest
 from evolvent.dynamics.transient.steady_state import until_steady
 from evolvent.gears.contact.pair_contact import gear_contact
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.arrays import Floats
@@ -58,7 +58,7 @@ def test_flanks_just_touch() -> None:
     grows at the speed of the line of action."""
     case, start = resting()
     pair, ψ = case.pair, float(start.motion.position[-1])
-    stand = Stand(pair.model.pair, 0.0, pair.drive.rotations(ψ))
+    stand = PairRotation(pair.model.pair, 0.0, pair.drive.rotations(ψ))
     gaps = gear_contact(pair.model.bodies, stand, list(pair.model.teeth), np.inf).operator.gap
     assert abs(float(np.min(gaps))) < 1e-4
     rate = float(start.motion.velocity[-1]) * pair.lever

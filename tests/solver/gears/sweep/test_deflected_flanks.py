@@ -18,7 +18,7 @@ from evolvent.fem.surface import Surface
 from evolvent.gears.contact.pair_contact import gear_contact
 from evolvent.gears.contact.search_window import placed_flanks
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.solution.certificates import pitch_imbalance
 from evolvent.gears.sweep import deflected_flanks
 from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
@@ -68,7 +68,7 @@ def test_flanks_displaced_as_by_a_rotation_are_those_of_the_rotated_gear() -> No
     """Problem: a spur pair whose wheel flanks are displaced as if the wheel had turned by 1e-4. Exact: frames, weights,
     levers are those of the wheel turned; the gap along the normals is the one between the points as they were."""
     model = model_of(spur_scene("mesh.level=quick"))
-    stand, teeth = Stand(model.pair, 0.02), list(model.teeth)
+    stand, teeth = PairRotation(model.pair, 0.02), list(model.teeth)
     turned = stand.turned(Member.WHEEL, 1e-4)
     displaced = {}
     for tooth in teeth:

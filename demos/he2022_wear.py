@@ -29,7 +29,9 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import draw
 from evolvent.results.engagement import engagement
-from evolvent.run.scene_run import run_scene
+from evolvent.run.call import Options
+from evolvent.run.compute import compute
+from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent.wear.results.mesh_passage import (
@@ -177,7 +179,7 @@ def main(
         worn = worn_scene(scene, quick, setting or [])
     except SceneError as error:
         raise typer.BadParameter(str(error)) from error
-    run_scene(worn, out, resume=True, quiet=quick)
+    compute(Run.of(worn), out, Options(resume=True, quiet=quick))
     if MPI.COMM_WORLD.rank:
         return
     study = read_worn(out)

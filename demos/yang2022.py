@@ -17,7 +17,9 @@ from mpi4py import MPI
 
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.results.run_data import RunData, read_run
-from evolvent.run.scene_run import run_scene
+from evolvent.run.call import Options
+from evolvent.run.compute import compute
+from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import load_scene
 
 SMALL = (
@@ -29,7 +31,7 @@ SMALL = (
 def main(out: Path, quick: bool = False) -> None:
     """Computes the pair into `out` and checks the trend."""
     scene = load_scene(Path(__file__).with_name("yang2022.toml"), SMALL if quick else ())
-    run_scene(scene, out, resume=True, quiet=quick)
+    compute(Run.of(scene), out, Options(resume=True, quiet=quick))
     if MPI.COMM_WORLD.rank == 0:
         before, after = friction_effect(read_run(out))
         print(f"sum of normal forces, lowest to highest μ: {before:+.1%} before the pitch point, {after:+.1%} after it")

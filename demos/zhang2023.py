@@ -22,7 +22,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from evolvent.run.strength.strength_run import run_strength
+from evolvent.run.call import Options
+from evolvent.run.compute import compute
+from evolvent.run.kinds.strength import Strength
 from evolvent.scene.scene import load_scene
 
 SCENE = Path(__file__).resolve().with_name("zhang2023.toml")
@@ -76,7 +78,7 @@ def main(
         settings = [f"load.torque_Nm={torque}", *(f"{gear}.rack_tip_radius_mm={MODULE * radius}" for gear in PAPER)]
         small = ["mesh.level=quick", "sweep.positions=6"] if quick else []
         folder = out / f"{torque:g}_Nm_{radius:.2f}"
-        run_strength(load_scene(SCENE, [*PLANE, *settings, *small]), folder, overwrite=True)
+        compute(Strength.of(load_scene(SCENE, [*PLANE, *settings, *small])), folder, Options(overwrite=True))
         if MPI.COMM_WORLD.rank == 0:
             table += [figures(folder / "strength.csv", gear, torque, radius, μ) for gear in PAPER for μ in FRICTIONS]
     if MPI.COMM_WORLD.rank > 0:

@@ -30,9 +30,10 @@ from demos.two_blocks import variants
 from evolvent import Solution, solve
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arrays
-from evolvent.run.scene_run import run_scene
+from evolvent.run.kinds.run import Run
 from evolvent_meshes.files import write_bytes
 from tests.support.gear_cases import helical_scene, spur_scene
+from tests.support.running.quiet import quietly
 
 TOLERANCE = 1e-6
 NO_RESULTS = {
@@ -51,11 +52,11 @@ class Difference:
     where: str
 
 
-def compute(out: Path) -> None:
+def solve_all(out: Path) -> None:
     """Solves a spur and a helical pair with friction, patch tests of all cells, a cylinder and a ball on a block."""
     dolfinx_compat.silence_logs()
-    run_scene(spur_scene("contact.friction=[0.0, 0.3]"), out / "spur", quiet=True)
-    run_scene(helical_scene("mesh.order=2"), out / "helical", quiet=True)
+    quietly(Run.of(spur_scene("contact.friction=[0.0, 0.3]")), out / "spur")
+    quietly(Run.of(helical_scene("mesh.order=2")), out / "helical")
     for patch in variants(quick=False):
         name = f"{patch.shape}_{patch.order}_on_{patch.first}_friction_{patch.friction:g}"
         keep(out / "blocks" / f"{name}.npz", solve(patch.problem()))
@@ -160,7 +161,7 @@ def main(arguments: list[str]) -> int:
     both.add_argument("--tolerance", type=float, default=TOLERANCE, help="largest relative difference let pass")
     given = parser.parse_args(arguments)
     if given.command == "compute":
-        compute(given.out)
+        solve_all(given.out)
         return 0
     try:
         return compare(given.one, given.other, given.tolerance)

@@ -26,7 +26,7 @@ def _may_start_mpirun(request: pytest.FixtureRequest, monkeypatch: pytest.Monkey
 
 
 @pytest.fixture(scope="session")
-def run_script() -> processes.Run:
+def run_script() -> processes.RunScript:
     """See processes.run_script."""
     return processes.run_script
 

@@ -1,13 +1,14 @@
 """`python -m evidence.robustness.study_kills [--kills 30] [--seed 0] [--out docs]`: kills of a study at random moments.
 
-Workers, those that start among them, and the study itself are killed; a study that was killed, or has ended, is begun
-again, until all kills are done; then it is let end. Writes OUT/studies/kills.csv, from which `make pages` makes rows of
-docs/studies.md.
+Workers, those that start among them, and the study itself are killed; a study that was killed, has given up, or has
+ended, is begun again, until all kills are done; then it is let end. Writes OUT/studies/kills.csv, from which
+`make pages` makes rows of docs/studies.md.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import random
 import signal
@@ -15,7 +16,7 @@ import subprocess
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -53,6 +54,10 @@ pair.normal_pressure_angle_deg = [20.0, 19.5]
 ORPHANS, PATIENCE = 10.0, 1200.0
 """Time in which processes end with their study; in which a study ends [s]."""
 STUDY, COMPUTING, STARTING = "the study", "workers", "workers that start"
+GIVEN_UP = "worker processes one after the other ended while they started"
+"""Part of the message of a study that gives up, see `evolvent.run.study.local_workers.STARTS`."""
+SAME = 1e-8
+"""Largest relative difference of a figure between two runs of a scene (docs/checks.md)."""
 LONGEST = {STUDY: 30.0, COMPUTING: 10.0, STARTING: 3.0}
 """Longest time until a process of a kind is killed, from when it is there [s]."""
 
@@ -67,10 +72,12 @@ class Outcome:
     """Processes that have outlived their study by more than ORPHANS."""
     slowest: float = 0.0
     """Longest time that a process has outlived its study [s]."""
+    given_up: int = 0
+    """Studies that have ended with a message as more than ten workers in a row were killed while they started."""
     hangs: int = 0
     """Studies that have not ended within PATIENCE."""
     differ: int = 0
-    """Tables that differ from that of a study without kills."""
+    """Tables that differ by more than `SAME` from that of a study without kills."""
     ends: int = 0
     """Studies that have ended by themselves."""
 
@@ -87,13 +94,35 @@ def killed_at_random(folder: Path, kills: int, seed: int) -> Outcome:
             while outcome.kills.total() < kills and program.poll() is None:
                 kind = random_.choice((STUDY, COMPUTING, STARTING))
                 _kill(program, kind, random_.uniform(0.0, LONGEST[kind]), outcome)
+            said = ""
             with suppress(subprocess.TimeoutExpired):
-                program.communicate(timeout=PATIENCE)
-            if program.returncode != -signal.SIGKILL:
+                said = "".join(each or "" for each in program.communicate(timeout=PATIENCE))
+            if GIVEN_UP in said:
+                outcome.given_up += 1
+            elif program.returncode != -signal.SIGKILL:
                 outcome.hangs += program.poll() is None
-                outcome.differ += not (program.poll() == 0 and rows(out) == wanted)
+                outcome.differ += program.poll() != 0 or bool(differing(rows(out), wanted))
                 outcome.ends += 1
     return outcome
+
+
+def differing(table: Sequence[Mapping[str, str]], wanted: Sequence[Mapping[str, str]]) -> list[str]:
+    """Cells of a table that are not those of the wanted one, numbers to `SAME`; prints them."""
+    if [list(row) for row in table] != [list(row) for row in wanted]:
+        found = [f"{len(table)} rows, wanted {len(wanted)}, or other columns"]
+    else:
+        pairs = [(name, row[name], other[name]) for row, other in zip(table, wanted) for name in row]
+        found = [f"{name}: {cell}, wanted {other}" for name, cell, other in pairs if not _same(cell, other)]
+    for each in found:
+        print(f"differs: {each}", flush=True)
+    return found
+
+
+def _same(cell: str, wanted: str) -> bool:
+    """Whether two cells are the same text, or numbers that differ by less than `SAME`."""
+    with suppress(ValueError):
+        return cell == wanted or math.isclose(float(cell), float(wanted), rel_tol=SAME)
+    return False
 
 
 def _kill(program: subprocess.Popen[str], kind: str, seconds: float, outcome: Outcome) -> None:
@@ -139,6 +168,8 @@ def measured(outcome: Outcome) -> Iterator[Measured]:
     yield Measured(f"kills at random moments: {count}", float(outcome.kills.total()), "at least 30",
                    yes(outcome.kills.total() >= 30))
     yield Measured("studies among them that hang", float(outcome.hangs), "0", yes(outcome.hangs == 0))
+    yield Measured("studies that say that eleven workers in a row ended while they started, and are begun again",
+                   float(outcome.given_up), "any number", "yes")
     yield Measured(f"processes that outlive their study by more than {ORPHANS:g} s", float(outcome.orphans), "0",
                    yes(outcome.orphans == 0))
     yield Measured("longest time that one does [s]", outcome.slowest, "at most 10", yes(not outcome.orphans))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.running.processes import Done, Run, on_ranks
+from tests.support.running.processes import Done, RunScript, on_ranks
 
 DEMOS = ("two_blocks", "hertz_cylinder", "transmission_error", "hertz_sphere")
 LARGER_CELLS = {"yang2022": 'demo.SMALL += ("mesh.order=1",)'}
@@ -28,7 +28,7 @@ def started(demo: str, out: Path, ranks: int) -> tuple[str, ...]:
 
 
 @pytest.fixture(scope="module")
-def alone(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Alone:
+def alone(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) -> Alone:
     """A finished verification demo on one rank, and its folder; each is computed once."""
 
     @cache
@@ -41,7 +41,7 @@ def alone(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Alone:
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
 @pytest.mark.parametrize("demo", [*DEMOS[:3], pytest.param(DEMOS[3], marks=[pytest.mark.slow, pytest.mark.evidence])])
-def test_demo(run_script: Run, alone: Alone, tmp_path: Path, demo: str, ranks: int) -> None:
+def test_demo(run_script: RunScript, alone: Alone, tmp_path: Path, demo: str, ranks: int) -> None:
     """Status 0, a table and a picture; the table is printed once, whatever the number of ranks."""
     done, out = alone(demo) if ranks == 1 else (run_script(*started(demo, tmp_path, 2), ranks=2), tmp_path)
     assert done.returncode == 0, done.stderr[-3000:]
@@ -66,7 +66,7 @@ def test_ball_profile_on_squares(alone: Alone) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_gear_demo(run_script: Run, tmp_path: Path, ranks: int) -> None:
+def test_gear_demo(run_script: RunScript, tmp_path: Path, ranks: int) -> None:
     """The paper's pair on a coarse mesh: status 0, tables, fields, pictures; the demo itself asserts the trend."""
     done = run_script(*started("yang2022", tmp_path, ranks), ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
@@ -79,7 +79,7 @@ def test_gear_demo(run_script: Run, tmp_path: Path, ranks: int) -> None:
 
 
 @pytest.mark.slow
-def test_wear_demo(run_script: Run, tmp_path: Path) -> None:
+def test_wear_demo(run_script: RunScript, tmp_path: Path) -> None:
     """Status 0, a table of at least ten rows and a picture; the demo itself asserts what Archard's law asks for."""
     done = run_script("demos/pin_on_disc.py", "--quick", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr[-3000:]
@@ -89,7 +89,7 @@ def test_wear_demo(run_script: Run, tmp_path: Path) -> None:
 
 @pytest.mark.evidence
 @pytest.mark.slow
-def test_gear_wear_demo(run_script: Run, tmp_path: Path) -> None:
+def test_gear_wear_demo(run_script: RunScript, tmp_path: Path) -> None:
     """He's pair on a coarse mesh: status 0, the run's pictures and the paper's, a table over the profile, a line a
     figure; the demo itself asserts its bounds."""
     done = run_script("demos/he2022_wear.py", "--quick", "--out", str(tmp_path))
@@ -103,7 +103,7 @@ def test_gear_wear_demo(run_script: Run, tmp_path: Path) -> None:
 
 @pytest.mark.evidence
 @pytest.mark.slow
-def test_gear_dynamics_demo(run_script: Run, tmp_path: Path) -> None:
+def test_gear_dynamics_demo(run_script: RunScript, tmp_path: Path) -> None:
     """He's pair with fewer positions and speeds: status 0 and a picture; resonance leans to lower speeds with both
     models of the mesh, so that running down jumps below running up, and the paper's asks for 258.6 N/µm (m ω²)."""
     done = run_script("demos/he2022_dynamics.py", "--quick", "--out", str(tmp_path))
@@ -119,7 +119,7 @@ def test_gear_dynamics_demo(run_script: Run, tmp_path: Path) -> None:
 
 @pytest.mark.evidence
 @pytest.mark.slow
-def test_root_stress_demo(run_script: Run, tmp_path: Path) -> None:
+def test_root_stress_demo(run_script: RunScript, tmp_path: Path) -> None:
     """Zhang's pair on coarse meshes under two torques: status 0, a picture; tension is proportional to the torque, 1 %,
     within 10 % of the paper's at 500 N·m, and below the formula at b."""
     done = run_script("demos/zhang2023.py", "--quick", "--out", str(tmp_path))
@@ -136,7 +136,7 @@ def test_root_stress_demo(run_script: Run, tmp_path: Path) -> None:
         assert tensions[1] < float(more["equal_shares_b_MPa"])
 
 
-def test_gear_wear_demo_refuses_too_much(run_script: Run, tmp_path: Path) -> None:
+def test_gear_wear_demo_refuses_too_much(run_script: RunScript, tmp_path: Path) -> None:
     """A setting that wears the flank away: status 2 and what is allowed."""
     settings = ("--set", "wear.cycles=1e9", "--out", str(tmp_path))
     done = run_script("demos/he2022_wear.py", "--quick", *settings)

@@ -13,6 +13,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from evidence.checkout import DEMOS
+from evidence.solved_run import solved_run
 from evolvent.gears.gear_model import Mesher
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
@@ -22,8 +23,7 @@ from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.error_bars.estimation import errors_between
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData

@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import BarProblem, reference_mesh
+from evidence.calls import temporary_call
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.results.curves import CoarseExcitation, PitchCurve, pitch_curves
 from evolvent.gears.gear_model import Mesher
@@ -22,7 +22,7 @@ from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.run.dynamics.excitation import loaded_pitch
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
-from evolvent.run.progress import Progress
+from evolvent.run.kept_pitch import Meshes
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent_meshes.arrays import Floats
 
@@ -124,6 +124,6 @@ def _with_positions(scene: Scene) -> Scene:
 def _excitation(loads: SceneTorques, mesh: Mesher) -> MeshExcitation:
     """On this rank alone."""
     angles = np.array(uniform_pitch(loads.problem.pair.pinion.z, loads.scene.sweep.positions).angles)
-    with Progress(hidden=True) as progress:
-        loaded = loaded_pitch(loads, angles, mesh, MPI.COMM_SELF, progress)
+    with temporary_call() as call:
+        loaded = loaded_pitch(call, loads, angles, Meshes(mesh))
     return MeshExcitation(np.zeros(len(angles)), loaded)

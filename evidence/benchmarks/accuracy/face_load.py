@@ -16,14 +16,14 @@ import numpy as np
 from mpi4py import MPI
 
 from evidence.checkout import DOCS
+from evidence.solved_run import solved_run
 from evidence.tables import Column, Table, write_rows
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.iso_stiffness import mesh_stiffness, single_stiffness
 from evolvent.results.face_load import face_load
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.scene import Scene, scene_from_text
 
 SCENE = """

@@ -12,17 +12,17 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import SCENES, BarProblem, mesh_cases, spur_problem
+from evidence.calls import temporary_call
 from evidence.checkout import DEMOS
 from evolvent.gears.gear_model import Mesher
 from evolvent.gears.meshing.root_meshes import RootMesh, finer_roots, with_back_root
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.error_bars.compared import Curve
-from evolvent.run.progress import Progress
-from evolvent.run.strength.pitch_roots import PitchRoots, pitch_roots
+from evolvent.run.kept_pitch import Meshes
+from evolvent.run.strength.pitch_roots import PitchRoots, one_sector, pitch_roots
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.strength.results.root_curves import compression_curve, curve_errors, tension_curve
 from evolvent.strength.root_passage import GearRoots
@@ -150,8 +150,8 @@ def _with_positions(scene: Scene) -> Scene:
 
 def _roots(scene: Scene, mesh: Mesher, angles: Sequence[float] | None = None) -> PitchRoots:
     """At each friction coefficient, on this rank alone. angles: see `pitch_roots`."""
-    with Progress(hidden=True) as progress:
-        return pitch_roots(scene, mesh, MPI.COMM_SELF, progress, angles=angles)
+    with temporary_call() as call:
+        return pitch_roots(call, scene, Meshes(mesh, problem=one_sector), angles)
 
 
 def _reference(halvings: int) -> Mesher:

@@ -24,7 +24,9 @@ from evidence.checkout import DEMOS, DOCS
 from evidence.tables import markdown, read_csv, read_rows, write_rows
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
-from evolvent.run.dynamics.transient.transient_run import run_transient
+from evolvent.run.call import Options
+from evolvent.run.compute import compute
+from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
 
@@ -96,7 +98,7 @@ def computed(settings: Sequence[str], variant: str, folder: Path, speeds: Sequen
     """The demo at all speeds, in this folder."""
     more = f"transient.speeds_rpm={list(speeds)}", "transient.mesh_periods=300", "output.animation=false"
     scene = load_scene(DEMOS / "he2022_dynamics.toml", [*settings, *more, "output.pictures=false", variant])
-    run_transient(scene, folder, resume=True, quiet=True)
+    compute(Transient.of(scene), folder, Options(resume=True, quiet=True))
     return folder
 
 

@@ -17,7 +17,9 @@ import numpy as np
 from evidence.checkout import DEMOS
 from evidence.tables import markdown
 from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
-from evolvent.run.dynamics.vibration import run_dynamics
+from evolvent.run.call import Options
+from evolvent.run.compute import compute
+from evolvent.run.kinds.dynamics import Dynamics
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
 
@@ -65,7 +67,7 @@ def swept(level: str, positions: int, variant: str, out: Path) -> Swept:
     bars = f"output.error_bars={str(level == 'quick').lower()}"
     scene = load_scene(DEMOS / "he2022_dynamics.toml", [*settings, bars, *SPEEDS, variant])
     folder = out / f"{level}_{positions}"
-    run_dynamics(scene, folder, resume=True, quiet=True)
+    compute(Dynamics.of(scene), folder, Options(resume=True, quiet=True))
     rows, known = RESPONSE.read(folder), DYNAMICS.read(folder)
     names = "speed_rpm", *(name for figure in FIGURES for name in (figure, f"{figure}_error"))
     columns = {name: np.array([getattr(row, name) for row in rows]) for name in names}

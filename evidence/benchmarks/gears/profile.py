@@ -22,7 +22,7 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.sweep.periodic_pitch import sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import initial_state
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.gear_problem import gear_problem
 
 

@@ -17,17 +17,18 @@ from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import SCENES
 from evidence.benchmarks.motion.motion_row import MotionRow
+from evidence.calls import temporary_call
 from evidence.checkout import DEMOS
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.of_scene import drive_settings, operating_point
 from evolvent.dynamics.pair_model import drive
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.run.dynamics.excitation import computed_excitation
+from evolvent.run.dynamics.excitation import solved_excitation
 from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.dynamics.speeds import sweep_at, sweep_list
-from evolvent.run.progress import Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
+from evolvent.scene.schema.output import OutputSection
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
 from evolvent.wear.gears.solver import wear_study, wearing_pair
@@ -108,10 +109,10 @@ def _scene(path: Path, level: str, positions: int, *settings: str) -> Scene:
 
 def _excitation(scene: Scene, percents: Sequence[float]) -> tuple[MeshExcitation, float]:
     """And its CPU seconds, from meshing on."""
-    loads = scene_torques(scene, percents)
+    loads = scene_torques(scene.model_copy(update={"output": OutputSection(error_bars=False)}), percents)
     begin = time.process_time()
-    with Progress(hidden=True) as progress:
-        excitation = computed_excitation(loads, MPI.COMM_SELF, progress)
+    with temporary_call() as call:
+        excitation = solved_excitation(call, loads).excitation
     return excitation, time.process_time() - begin
 
 

@@ -99,7 +99,7 @@ def plot(
 ) -> None:
     """Draw the pictures of a finished command again."""
     with reported():
-        from evolvent.run.redraw import plot_folder
+        from evolvent.run.kinds.redraw import plot_folder
 
         drawn = plot_folder(directory)
         for failure in drawn.failures:

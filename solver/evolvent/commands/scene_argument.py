@@ -62,10 +62,10 @@ def require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm | None 
 
     comm: the ranks that take part; None: this process alone, without MPI.
     """
-    from evolvent.check.problem_size import MEMORY_OF, require_memory
+    from evolvent.check.problem_size import MEMORY_OF, memory_megabytes, require_memory
 
     if not force:
-        require_memory(scene, MEMORY_OF[command], comm)
+        require_memory(scene, MEMORY_OF.get(command, memory_megabytes), comm)
 
 
 def require(holds: bool, message: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from evolvent.fem.lagrange import gmsh_permutation
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.condensed_gear import GearBody
-from evolvent.gears.meshing.levelled_meshes import LevelledMesh, run_mesh
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, run_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level_gear import levelled_flank
 from evolvent_meshes.arrays import Ints
@@ -40,9 +41,12 @@ class MeshedGear:
         return MeshedGear(body.mesh, body.flank, bool(body.levels))
 
 
-def meshed_gear(problem: GearProblem, member: Member) -> MeshedGear:
-    """Sector and flank of the pinion or the wheel, without condensing it. Raises MeshError, TooMuchRelief."""
-    sector = run_mesh(problem, member)
+def meshed_gear(
+    problem: GearProblem, member: Member, mesh: Callable[[GearProblem, Member], SectorMesh] = run_mesh
+) -> MeshedGear:
+    """Sector and flank of the pinion or the wheel, without condensing it. mesh: makes the sector. Raises MeshError,
+    TooMuchRelief."""
+    sector = mesh(problem, member)
     if isinstance(sector, LevelledMesh):
         return MeshedGear(sector.mesh, levelled_flank(problem, member, sector), True)
     return MeshedGear(sector, surface_of(sector, "flank"))

@@ -4,52 +4,44 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TypeVar
+from typing import Any
 
-from mpi4py import MPI
-
-from evolvent.fem.parallel.ranks import on_first
+from evolvent.results.archive.run_cost import FILE as COST
+from evolvent.results.archive.run_cost import read_cost
 from evolvent.results.archive.run_folder import LOG, FolderError, RunFolder
-from evolvent.results.archive.run_lock import locked
 from evolvent.results.archive.scene_files import SCENE_FILES, scene_texts
+from evolvent.run.call import Options
+from evolvent.run.computation import Computation
 from evolvent.scene.scene import GEARS, Scene, kept_scene
 
-COMPUTED = ("results/state.npz", "results/wear.npz", "summary.json")
-"""Files with results: one of them exists as soon as anything has been computed."""
-WRITTEN = (
-    str(LOG), *SCENE_FILES, "summary.json", "positions.csv", "teeth.csv", "wear.csv", "wear.json",
-    "results/gears.npz", "results/position_*.npz", "results/state.npz", "results/errors.npz", "results/wear.npz",
-    "results/cost.json",
-)
-"""Files that a run writes for every scene. Fields and pictures are checked one by one when they are written."""
-OTHERS = (
-    "strength.csv", "fatigue.csv", "excitation.json", "results/excitation.npz", "transient.csv",
-    "results/transient_*.npz", "loads.csv",
-)
-"""Files that tell of another command's results, which a run that begins anew would remove or write over."""
+COMMON = (str(LOG), *SCENE_FILES, str(COST))
+"""Files that every computation writes."""
+MARKS = {
+    "loads.csv": "loads", "fatigue.csv": "fatigue", "strength.csv": "strength", "transient.csv": "transient",
+    "results/transient_*.npz": "transient", "response.csv": "dynamics", "excitation.json": "excitation",
+    "results/excitation*.npz": "excitation",
+}
+"""Files of earlier versions, which did not write their command down, and the command that they tell of."""
 STUDY = "study.json"
 """File in the folder of a study with the identity of its table."""
 NAMED = 10
 """Largest number of foreign files that a message names."""
 
 
-T = TypeVar("T")
-
-
-@contextmanager
-def writing_to(out: Path, comm: MPI.Comm, checked: Callable[[], T]) -> Iterator[T]:
-    """Context in which no other run writes to the folder. Gives what `checked` returns, which looks at the folder on
-    rank 0 once it is this run's. Collective.
-
-    Raises FolderError where another run writes there or the folder is that of a study, and what `checked` raises.
-    """
-    with ExitStack() as lock:
-        on_first(comm, lambda: lock.enter_context(locked(out)))
-        on_first(comm, lambda: require_no_study(out))
-        yield on_first(comm, checked)
+def check_folder(what: Computation[Any], out: Path, options: Options) -> None:
+    """Raises FolderError where a computation would lose results or overwrite foreign files."""
+    folder = RunFolder(out)
+    require_no_study(out)
+    _keep_sources(what.scene, folder, options.source)
+    folder.require_free([*COMMON, *what.outputs.results, *what.outputs.stored])
+    _require_no_other(what, out)
+    found = begun_results(what, out)
+    if found and not (options.resume or options.overwrite):
+        raise FolderError(
+            f"{out}: found the results of an earlier call ({found[0]}); allowed: a folder without; remedy: --resume "
+            "goes on from them, --overwrite removes them and computes anew, --out names another folder"
+        )
 
 
 def require_no_study(out: Path) -> None:
@@ -61,68 +53,40 @@ def require_no_study(out: Path) -> None:
         )
 
 
-def require_new(out: Path, written: Sequence[str], table: str, overwrite: bool) -> None:
-    """Checks the folder of a command that archives nothing before its end. written: names of all its files. table: the
-    file by which an earlier call is recognised. Raises FolderError where files of others would be lost, or results
-    without --overwrite."""
-    RunFolder(out).require_free(written)
-    if (out / table).exists() and not overwrite:
-        raise FolderError(
-            f"{out}: found {table} of an earlier call; allowed: a folder without; remedy: --overwrite computes it "
-            "anew, --out names another folder"
-        )
+def begun_command(out: Path) -> str:
+    """The command that has begun to write to a folder; empty where there is none. Raises ArchiveError where the file
+    of its cost cannot be read."""
+    if (out / STUDY).exists():
+        return "study"
+    marked = (command for pattern, command in MARKS.items() if any(out.glob(pattern)))
+    return read_cost(RunFolder(out)).command or next(marked, "")
 
 
-def require_unfinished(
-    out: Path, written: Sequence[str], kept: tuple[str, str], what: str, resume: bool, overwrite: bool
-) -> list[str]:
-    """Checks the folder of a command that archives results while it computes. Returns a sentence where there is nothing
-    to resume.
+def nothing_to_resume(what: Computation[Any], out: Path) -> str:
+    """A sentence where there is nothing to resume, empty where there is.
 
-    written: names of all that it writes. kept: the file that is there first, and the table that is written in the end.
-    what: it goes on from.
-
-    Raises FolderError where files of others would be lost, or results unasked.
+    This is no error: a call that was stopped early has left no results.
     """
-    RunFolder(out).require_free(written)
-    there = [name for name in kept if (out / name).exists()]
-    if there and not (resume or overwrite):
+    if begun_results(what, out):
+        return ""
+    return (
+        f"--resume found nothing to continue in {out} (no {what.outputs.stored[0]}); `evolvent {what.command}` begins "
+        "from the start."
+    )
+
+
+def begun_results(what: Computation[Any], out: Path) -> list[str]:
+    """Names of the files in the folder that tell of results: one is there as soon as anything was computed."""
+    return [name for name in (*what.outputs.stored[:1], *what.outputs.tables) if (out / name).exists()]
+
+
+def _require_no_other(what: Computation[Any], out: Path) -> None:
+    """Raises FolderError where another command has written to the folder: the scene of a folder repeats all that lies
+    in it."""
+    if (other := begun_command(out)) and other != what.command:
         raise FolderError(
-            f"{out}: found {there[-1]} of an earlier call; allowed: a folder without; remedy: --resume goes on from "
-            f"its {what}, --overwrite computes them anew, --out names another folder"
-        )
-    if resume and not there:
-        return [f"--resume found nothing to continue in {out} (no {kept[0]}); the call begins from the start."]
-    return []
-
-
-def check_folder(scene: Scene, out: Path, resume: bool, overwrite: bool, source: Path | None) -> None:
-    """Raises FolderError where a run would lose results or overwrite foreign files.
-
-    source: file that `scene` was read from, None where there is none.
-    """
-    folder = RunFolder(out)
-    require_no_study(out)
-    _keep_sources(scene, folder, source)
-    folder.require_free(WRITTEN)
-    if not (resume and any((out / name).exists() for name in COMPUTED[:2])):
-        _require_no_others(out)
-    results = [name for name in COMPUTED if (out / name).exists()]
-    if results and not (resume or overwrite):
-        raise FolderError(
-            f"{out}: found the results of a run ({results[0]}); allowed: a folder without; remedy: --resume continues "
-            "after them, --overwrite removes them and computes anew, --out names another folder"
-        )
-
-
-def _require_no_others(out: Path) -> None:
-    """Raises FolderError where the folder has the results of another command: `run` keeps a list of its files with
-    theirs, and removes all that it lists when it begins anew."""
-    others = [path.relative_to(out).as_posix() for name in OTHERS for path in sorted(out.glob(name))]
-    if others:
-        raise FolderError(
-            f"{out}: found {others[0]}, of another command; allowed: a folder without, as a run that begins anew "
-            "removes what is there; remedy: --out names another folder"
+            f"{out}: found results of `evolvent {other}`; allowed: a folder without, or with those of `evolvent "
+            f"{what.command}`; remedy: --out names another folder"
         )
 
 
@@ -143,10 +107,10 @@ def _keep_sources(scene: Scene, folder: RunFolder, source: Path | None) -> None:
             )
 
 
-def changed_files(out: Path) -> str:
-    """A sentence on the files of a run that have been changed since, empty where there are none."""
-    files = ", ".join(map(str, RunFolder(out).changed_files(WRITTEN)))
-    remedy = "move or remove that, and `evolvent run ... --resume` writes it anew"
+def changed_files(what: Computation[Any], out: Path) -> str:
+    """A sentence on the files of a computation that have been changed since, empty where there are none."""
+    files = ", ".join(map(str, RunFolder(out).changed_files([*COMMON, *what.outputs.results, *what.outputs.stored])))
+    remedy = f"move or remove that, and `evolvent {what.command} ... --resume` writes it anew"
     return f"changed, or cut off, since a run has written it: {files}; {remedy}" if files else ""
 
 

@@ -26,8 +26,9 @@ class LogFile(logging.Handler):
     A disk without room for the log does not end the run: one message on stderr says where the log ends.
     """
 
-    def __init__(self, folder: RunFolder, append: bool) -> None:
+    def __init__(self, folder: RunFolder, append: bool, label: str | None = "") -> None:
         super().__init__()
+        self._label = label
         self.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
         self._folder, self._mode, self._held = folder, "a" if append else "w", list[str]()
         self._begun = self._lost = False
@@ -46,8 +47,9 @@ class LogFile(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         """Buffers or writes a line; a warning is printed on stderr, too, whichever module it comes from."""
         line = self.format(record) + "\n"
-        if record.levelno == logging.WARNING:
-            print(f"evolvent: {record.getMessage()}", file=sys.stderr)
+        if record.levelno == logging.WARNING and self._label is not None:
+            label = f"{self._label}: " if self._label else ""
+            print(f"evolvent: {label}{record.getMessage()}", file=sys.stderr)
         if self._begun:
             self._guarded(lambda: self._append(line))
         else:
@@ -73,10 +75,14 @@ class LogFile(logging.Handler):
 
 
 class RunLog:
-    """The log of a run: a file on rank 0, nothing on the other ranks."""
+    """The log of a run: a file on rank 0, nothing on the other ranks.
+
+    warnings: all warnings so far, a sentence each.
+    """
 
     def __init__(self, handler: LogFile | None) -> None:
         self._handler, self._logger = handler, logging.getLogger(LOGGER)
+        self.warnings: list[str] = []
 
     def open(self) -> None:
         """Opens the log file: from now on the run writes files."""
@@ -89,6 +95,7 @@ class RunLog:
 
     def warning(self, message: str) -> None:
         """Writes a line to the log and prints it on stderr."""
+        self.warnings.append(message)
         self._logger.warning("warning: %s", message)
 
     def error(self, message: str, *values: object) -> None:
@@ -97,18 +104,22 @@ class RunLog:
 
 
 @contextmanager
-def logged(folder: RunFolder, comm: MPI.Comm, resumed: bool) -> Iterator[RunLog]:
-    """Context with the log of a run. Where the run fails, its last line is the reason. resumed: append to the file.
+def logged(folder: RunFolder, comm: MPI.Comm, resumed: bool, label: str | None = "") -> Iterator[RunLog]:
+    """Context with the log of a run. Where the run fails, its last line is the reason. Within the log of a run of
+    several, lines go to the inner one alone.
+
+    resumed: append to the file.
+    label: name in front of the warnings that are printed; None: they are not printed.
 
     Collective over `comm`.
     """
     logger = logging.getLogger(LOGGER)
-    level, propagate = logger.level, logger.propagate
+    level, propagate, outer = logger.level, logger.propagate, list(logger.handlers)
     logger.setLevel(logging.INFO)
     logger.propagate = False
-    handler: logging.Handler = LogFile(folder, resumed) if comm.rank == 0 else logging.NullHandler()
+    handler: logging.Handler = LogFile(folder, resumed, label) if comm.rank == 0 else logging.NullHandler()
     log = RunLog(handler if isinstance(handler, LogFile) else None)
-    logger.addHandler(handler)
+    logger.handlers = [handler]
     try:
         yield log
     except BaseException as error:
@@ -118,7 +129,7 @@ def logged(folder: RunFolder, comm: MPI.Comm, resumed: bool) -> Iterator[RunLog]
             log.error("%s", str(error) if isinstance(error, KeyboardInterrupt) else f"failed: {error}")
         raise
     finally:
-        logger.removeHandler(handler)
+        logger.handlers = outer
         handler.close()
         logger.setLevel(level)
         logger.propagate = propagate

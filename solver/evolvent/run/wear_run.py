@@ -10,26 +10,22 @@ from functools import partial
 from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.operation_figures import operation_warnings
 from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
-from evolvent.gears.meshed_gear import MeshedGear
+from evolvent.gears.meshed_gear import MeshedGear, meshed_gear
 from evolvent.gears.solution.certificates import certify, certify_pitch
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.archive.scene_files import write_scene
-from evolvent.results.drawing.picture_files import draw
 from evolvent.results.run_data import run_data
 from evolvent.results.tables.tables import summary, write_tables
-from evolvent.run.context import RunContext
-from evolvent.run.output import facts_of, log_pictures
-from evolvent.run.pitch_run import SweepRecord
+from evolvent.run.call import Call
+from evolvent.run.kept_pitch import timings_of
+from evolvent.run.output import facts_of
 from evolvent.run.progress import CYCLES
-from evolvent.run.start import checked_meshes, clear, prepare_gears, timings_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.wear import WearSection
-from evolvent.scene.skips import wanted_output
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
 from evolvent.wear.gears.gear_study import StudyCheckpoint, StudyState, checkpoint_of, study_states
@@ -38,62 +34,60 @@ from evolvent.wear.gears.meshed_pair import GearMeshMotion
 from evolvent.wear.gears.pitch_state import PitchState
 from evolvent.wear.gears.solver import FIRST_BLOCK, REFRESH
 from evolvent.wear.results.archive import read_checkpoint, worn_folder, write_checkpoint, write_pitch, write_worn
-from evolvent.wear.results.report import read_worn, write_report
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 
-def wear_scene(run: RunContext, scene: Scene, operating: OperatingPoint | None) -> SweepRecord:
-    """Solves and archives all blocks of a scene with [wear]. Collective; raises what `run_scene` does.
+def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tuple[MeshRecord, Timings]:
+    """Solves and stores all blocks of a scene with [wear]; returns its meshes, and the wall time. Collective; raises
+    what `compute` does.
 
-    The folder gets the unworn pair, as a sweep leaves it, and a subfolder worn_N with the pair after N cycles for each
+    The folder gets the unworn pair, as a run leaves it, and a subfolder worn_N with the pair after N cycles for each
     report. operating: where the pair vibrates as it wears; None: it wears under the constant torque.
     """
-    wear, begin, archive = scene.wear, time.perf_counter(), run.archive(scene)
+    wear, begin, archive = scene.wear, time.perf_counter(), call.archive(scene)
     assert wear is not None
-    kept = run.on_first(lambda: read_checkpoint(archive) if run.resume else None)
+    kept = call.on_first(lambda: read_checkpoint(archive) if call.resume else None)
     if kept is not None:
-        run.log.info("resumed after %.6g of %.6g cycles", kept.cycles, wear.cycles)
         if kept.cycles >= wear.cycles:
-            meshes = run.on_first(lambda: checked_meshes(scene, archive))
-            run.log.open()
-            return SweepRecord(meshes, Timings())
-    preparation = prepare_gears(run, scene)
+            meshes = call.on_first(lambda: _checked_meshes(scene, archive))
+            call.on_first(lambda: call.begin(scene, resumed=True))
+            call.log.info("resumed after all of %.6g cycles", kept.cycles)
+            return meshes, Timings()
+        call.log.info("resumed after %.6g of %.6g cycles", kept.cycles, wear.cycles)
+    preparation = call.gears(gear_problem(scene))
+    if kept is not None:
+        call.on_first(lambda: call.begin(scene, resumed=True))
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     μ = scene.contact.friction[0]
-    motion = mesh_motion_of(run, scene)
-    gears = GearWear(preparation.model, pitch, μ, law_of(wear), run.comm, motion, operating)
+    motion = mesh_motion_of(call, scene)
+    gears = GearWear(preparation.model, pitch, μ, law_of(wear), call.comm, motion, operating)
     meshes = MeshRecord.of([MeshedGear.of(body) for body in preparation.model.bodies])
-    run.progress.stage(CYCLES, round(wear.cycles), round(kept.cycles if kept else 0.0))
+    call.progress.stage(CYCLES, round(wear.cycles), round(kept.cycles if kept else 0.0))
     for stage in study_states(gears, wear.reports, settings_of(wear), kept):
         certify_positions(stage.state.evaluation)
         study = checkpoint_of(gears, stage)
-        cost = run.cost(_timings(preparation, time.perf_counter() - begin), run.memory_MB())
-        run.on_first(partial(_write, scene, archive, gears, meshes, stage, study, run.comm.size, cost))
-        run.log.info(_log_line(stage))
-        run.progress.reach(round(study.cycles))
+        cost = call.cost(_timings(preparation, time.perf_counter() - begin), call.memory_MB())
+        call.on_first(partial(_write, call, scene, gears, meshes, stage, study, cost))
+        call.log.info(_log_line(stage))
+        call.progress.reach(round(study.cycles))
     for sentence in operation_warnings(stage.vibrations):
-        run.log.warning(sentence)
-    return SweepRecord(meshes, _timings(preparation, time.perf_counter() - begin))
+        call.log.warning(sentence)
+    return meshes, _timings(preparation, time.perf_counter() - begin)
+
+
+def _checked_meshes(scene: Scene, archive: Archive) -> MeshRecord:
+    """The meshes of the scene. Raises ArchiveError where the stored results belong to other meshes."""
+    problem = gear_problem(scene)
+    meshes = MeshRecord.of([meshed_gear(problem, member) for member in Member])
+    archive.check_gears(meshes.shapes)
+    return meshes
 
 
 def _timings(preparation: Preparation, seconds: float) -> Timings:
     """Wall time of a study: whatever was not preparation was spent on blocks. seconds: of the whole study."""
     timings = timings_of(preparation)
     return replace(timings, positions=seconds - timings.total, total=seconds)
-
-
-def write_wear(run: RunContext, scene: Scene) -> None:
-    """Writes figures and pictures of the finished study, beside those of the unworn pair. On rank 0 alone.
-
-    Raises WriteError.
-    """
-    study = read_worn(run.folder.out)
-    write_report(study, run.folder)
-    if wanted_output(scene).pictures:
-        from evolvent.wear.results.figures import pictures  # matplotlib takes a second to import
-
-        log_pictures(draw(pictures(study), run.folder), run.log)
 
 
 def law_of(wear: WearSection) -> Archard:
@@ -107,14 +101,14 @@ def settings_of(wear: WearSection) -> BlockSettings:
     return BlockSettings(first, wear.tolerance, wear.blocks == "implicit")
 
 
-def mesh_motion_of(run: RunContext, scene: Scene) -> GearMeshMotion:
+def mesh_motion_of(call: Call, scene: Scene) -> GearMeshMotion:
     """Settings of the mesh updates in a wear study, and the function that condenses the gears after one."""
     assert scene.wear is not None
     given, module = scene.wear.refresh_um, scene.pair.normal_module_mm
 
     def condensed(mesh: Callable[[Member], MeshData]) -> GearModel:
-        model = prepare_model(gear_problem(scene), run.comm, lambda _, member: mesh(member)).model
-        run.log.info("the meshes have followed the wear; both gears are condensed again")
+        model = prepare_model(gear_problem(scene), call.comm, lambda _, member: mesh(member)).model
+        call.log.info("the meshes have followed the wear; both gears are condensed again")
         return model
 
     return GearMeshMotion(REFRESH * module if given is None else 1e-3 * given, condensed)
@@ -127,15 +121,13 @@ def certify_positions(state: PitchState) -> None:
 
 
 def _write(
-    scene: Scene, archive: Archive, gears: GearWear, meshes: MeshRecord, stage: StudyState, study: StudyCheckpoint,
-    ranks: int, cost: Cost,
+    call: Call, scene: Scene, gears: GearWear, meshes: MeshRecord, stage: StudyState, study: StudyCheckpoint, cost: Cost
 ) -> None:
     """Writes the worn pair at a report; then the state of the study, whose file marks the block as complete."""
-    state = stage.state
+    state, archive = stage.state, call.archive(scene)
     if stage.report and state.cycles == 0.0:
-        clear(archive.files)
+        call.begin(scene)
         write_pitch(archive, meshes.shapes, state.evaluation.positions)
-        write_scene(scene, archive.files)
     elif stage.report:
         folder = worn_folder(archive.out, state.cycles)
         RunFolder(folder).clear()
@@ -143,7 +135,7 @@ def _write(
         worn_archive = Archive(folder, worn)
         write_pitch(worn_archive, meshes.shapes, state.evaluation.positions)
         data = run_data(worn, worn_archive.read_gears(), worn_archive.read_positions(worn.gear_pair()))
-        write_tables(worn_archive.files, summary(data, facts_of(data, meshes, ranks, cost)))
+        write_tables(worn_archive.files, summary(data, facts_of(data, meshes, call.comm.size, cost)))
         write_cost(worn_archive.files, cost)
     write_checkpoint(archive, study)
     write_cost(archive.files, cost)

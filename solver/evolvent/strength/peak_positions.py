@@ -7,7 +7,7 @@ position starts from the friction history of the one before it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -38,6 +38,16 @@ class SweptRoots:
     """Root stress over the rotations of these positions."""
 
 
+Stored = Callable[[float, Callable[[], SweptPosition]], SweptPosition]
+"""Function that returns the position at a pinion rotation [rad]: a stored one, or that which the second argument
+solves."""
+
+
+def solved_at_once(angle: float, solve: Callable[[], SweptPosition]) -> SweptPosition:
+    """The position at a pinion rotation, of which none is stored."""
+    return solve()
+
+
 def roots_of(model: GearModel, positions: Sequence[SweptPosition]) -> Roots:
     """Roots of both gears, condensed from meshes of `root_meshes`, at each friction coefficient."""
     found: Roots = []
@@ -47,17 +57,21 @@ def roots_of(model: GearModel, positions: Sequence[SweptPosition]) -> Roots:
     return found
 
 
-def with_peaks(model: GearModel, known: SweptRoots, frictions: Sequence[float], comm: MPI.Comm) -> SweptRoots:
+def with_peaks(
+    model: GearModel, known: SweptRoots, frictions: Sequence[float], comm: MPI.Comm, stored: Stored = solved_at_once
+) -> SweptRoots:
     """Root stress with further positions around its largest values. Collective. Raises NotConverged, SearchError."""
     while angles := on_first(comm, partial(_further, model, known)):
-        known = with_angles(model, known, angles, frictions, comm)
+        known = with_angles(model, known, angles, frictions, comm, stored)
     return known
 
 
 def with_angles(
-    model: GearModel, known: SweptRoots, angles: Sequence[float], frictions: Sequence[float], comm: MPI.Comm
+    model: GearModel, known: SweptRoots, angles: Sequence[float], frictions: Sequence[float], comm: MPI.Comm,
+    stored: Stored = solved_at_once,
 ) -> SweptRoots:
     """Root stress with further pinion rotations [rad], each from the state of the last one before it. Collective.
+    stored: see `Stored`.
 
     Raises NotConverged, SearchError.
     """
@@ -65,10 +79,12 @@ def with_angles(
         return known
     stands = np.array([each.angle for each in known.positions])
 
+    def solve(angle: float) -> SweptPosition:
+        state = known.positions[int(np.searchsorted(stands, angle)) - 1].state
+        return next(sweep_pitch(model, Pitch((angle,)), frictions, state))
+
     def solved() -> list[SweptPosition]:
-        own = angles[comm.rank :: comm.size]
-        states = (known.positions[int(np.searchsorted(stands, angle)) - 1].state for angle in own)
-        return [next(sweep_pitch(model, Pitch((angle,)), frictions, state)) for angle, state in zip(own, states)]
+        return [stored(angle, partial(solve, angle)) for angle in angles[comm.rank :: comm.size]]
 
     further = [each for part in comm.allgather(together(comm, solved)) for each in part]
     every = sorted([*known.positions, *further], key=lambda each: each.angle)

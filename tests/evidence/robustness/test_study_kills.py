@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from evidence.robustness.study_kills import killed_at_random, measured
+from evidence.robustness.study_kills import differing, killed_at_random, measured
 
 
 @pytest.mark.slow
@@ -17,3 +17,12 @@ def test_kills_at_random_moments(tmp_path: Path) -> None:
     assert outcome.kills.total() == 3 and outcome.ends
     assert (outcome.hangs, outcome.orphans, outcome.differ) == (0, 0, 0)
     assert [each.holds for each in measured(outcome)] == ["no", "yes", "yes", "yes", "yes"]
+
+
+def test_a_table_differs_by_more_than_rounding() -> None:
+    """A relative difference of 1e-9 is that of two runs; 1e-6, another status and a missing row are not."""
+    row = {"status": "done", "stress_MPa": "123.456789"}
+    assert not differing([row], [{**row, "stress_MPa": "123.45678912"}])
+    for other in ({**row, "stress_MPa": "123.4569"}, {**row, "status": "failed"}, {**row, "stress_MPa": ""}):
+        assert len(differing([row], [other])) == 1
+    assert len(differing([], [row])) == 1

@@ -25,7 +25,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.section import section_mesh
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import helical_scene, model_of, spur_scene, swept
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
 
 MEBIBYTE = 1.048576
 
@@ -290,7 +290,7 @@ def test_check_takes_little_memory() -> None:
 
 
 @pytest.mark.mpi
-def test_two_ranks_refuse_with_one_message(run_script: Run) -> None:
+def test_two_ranks_refuse_with_one_message(run_script: RunScript) -> None:
     """Under mpirun the memory of all ranks on a machine counts; one message, status 2 on all."""
     code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = "run", "demos/yang2022.toml", "--out", "/nowhere/out", "--set", "load.torque_Nm=1e-4"

@@ -11,11 +11,12 @@ from evolvent.check.check_report import overview
 from evolvent.check.planned_cost import too_many_modes
 from evolvent.check.scene_warnings import scene_warnings
 from evolvent.check.transient_rows import natural_frequency, planned_steps, transient_lines
-from evolvent.run.dynamics.transient.transient_run import run_transient
+from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import spur_scene
+from tests.support.running.quiet import quietly
 
 NATURAL = 4566.0 / 60.0 * 50.0
 """[Hz] of He's pair, by ISO's natural speed (test_vibration_rows.py)."""
@@ -107,7 +108,7 @@ def test_too_many_modes_are_refused(tmp_path: Path) -> None:
     many = pair("transient.speeds_rpm=[40000]", "sweep.positions=400")
     assert any("modes of a gear" in each for each in scene_warnings(many))
     with pytest.raises(SceneError, match=r"transient\.speeds_rpm: found .* modes of a gear.*modes_per_harmonic"):
-        run_transient(many, tmp_path / "out", quiet=True)
+        quietly(Transient.of(many), tmp_path / "out")
     assert many.transient is not None
     assert too_many_modes(many, many.transient.model_copy(update={"modes_per_harmonic": 2})) is None
 
@@ -121,5 +122,5 @@ def test_a_backlash_that_nobody_names_is_said(start: str, words: str, tmp_path: 
     assert words in said and "pair.centre_distance_mm" in said
     if start == "rest":
         with pytest.raises(SceneError, match=r"dynamics\.backlash_um"):
-            run_transient(plain, tmp_path / "out", quiet=True)
+            quietly(Transient.of(plain), tmp_path / "out")
     assert not any("backlash_um" in each for each in scene_warnings(pair()))

@@ -27,7 +27,7 @@ from evidence.robustness.study_programs import (
     workers_of,
 )
 from tests.support.checkout import ROOT
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
 from tests.support.running.study_cases import TORQUES, table, written
 
 SLOW = (
@@ -88,7 +88,7 @@ def test_a_cluster_loses_a_worker(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: Run) -> None:
+def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: RunScript) -> None:
     """Without workers, with a worker of two threads: status 2 and what to start."""
     study = written(tmp_path, TORQUES)
     arguments = ["study", str(study), "--out", str(tmp_path / "out"), "--scheduler"]
@@ -104,7 +104,7 @@ def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: Run) -> None
 
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="wants openssl, which makes the certificates")
-def test_a_scheduler_with_certificates(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_script: Run) -> None:
+def test_a_scheduler_with_certificates(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_script: RunScript) -> None:
     """Scheduler, worker and study with certificates of one authority by Dask's own configuration: all scenes are done.
     A study without is refused."""
     study, certificate, key = written(tmp_path, TORQUES), tmp_path / "certificate.pem", tmp_path / "key.pem"
@@ -177,7 +177,7 @@ def test_commands_of_the_page(tmp_path: Path) -> None:
     ],
     ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
 )
-def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...], said: str) -> None:
+def test_wrong_options(tmp_path: Path, run_script: RunScript, options: tuple[str, ...], said: str) -> None:
     """Status 2, one line, nothing computed, and no folder left."""
     study, out = written(tmp_path, TORQUES), tmp_path / "out"
     done = run_script("-c", CODE, "study", str(study), "--out", str(out), "--quiet", *options)
@@ -186,7 +186,7 @@ def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...]
     assert not out.exists()
 
 
-def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, run_script: Run) -> None:
+def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, run_script: RunScript) -> None:
     """Refused; nothing is made where it leads."""
     (tmp_path / "out").symlink_to(tmp_path / "nowhere")
     study = written(tmp_path, TORQUES)
@@ -195,7 +195,7 @@ def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, run_script: Run) -> 
     assert not (tmp_path / "nowhere").exists()
 
 
-def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: Run) -> None:
+def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: RunScript) -> None:
     """--level as of the other commands."""
     study, out = written(tmp_path, TORQUES.replace("[100.0, 200.0, 300.0]", "[100.0]")), tmp_path / "out"
     done = run_script("-c", CODE, "study", str(study), "--out", str(out), "--quiet", "--level", "quick")
@@ -204,7 +204,7 @@ def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: Run) -> None:
 
 
 @pytest.mark.mpi
-def test_mpirun_is_refused(tmp_path: Path, run_script: Run) -> None:
+def test_mpirun_is_refused(tmp_path: Path, run_script: RunScript) -> None:
     """Two ranks: status 2, and what to do instead."""
     study = written(tmp_path, TORQUES)
     done = run_script("-c", CODE, "study", str(study), "--out", str(tmp_path / "out"), ranks=2)

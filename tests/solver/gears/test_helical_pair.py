@@ -9,7 +9,7 @@ import pytest
 
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.solution.certificates import balance_error
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from tests.support.gear_cases import helical_scene, model_of, swept
 
 

@@ -26,7 +26,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.section import SectorResolution
 from evolvent_meshes.sector.sector import sector_mesh
 from tests.support.gear_cases import helical_scene, model_of
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
 from tests.support.running.webbed_pair import WEB
 from tests.support.scene_texts import HE
 
@@ -140,7 +140,7 @@ def test_spur_pairs_with_webs_are_solved_in_space() -> None:
 
 @pytest.mark.filterwarnings("ignore:gear pair:evolvent.gears.CoarseContactWarning")
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_transmission_error_is_that_of_one_rank(run_script: Run, ranks: int) -> None:
+def test_transmission_error_is_that_of_one_rank(run_script: RunScript, ranks: int) -> None:
     """The webbed pair, two positions without friction and at μ = 0.1: the same curves on any number of ranks, 1e-9; the
     web adds to them."""
     frictions = [0.0, 0.1]

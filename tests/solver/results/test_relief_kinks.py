@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evidence.solved_run import solved_run
 from evolvent.contact.hertz import line_peak_pressure
 from evolvent.fem.material import contact_modulus
 from evolvent.gears.meshing.sector_meshes import gear_mesh
@@ -15,8 +16,7 @@ from evolvent.results.relief_kinks import relief_kinks, wedge_factor
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows, position_rows
 from evolvent.results.tables.run_warnings import warnings_of
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.plain_text import brief
 from evolvent.scene.scene import scene_from_text
 from evolvent_meshes.arrays import Floats

@@ -16,15 +16,15 @@ import pytest
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.gears.solution import certificates
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
-from evolvent.run.dynamics.excitation import run_excitation
 from evolvent.run.dynamics.scene_torques import scene_torques
-from evolvent.run.dynamics.transient import transient_run
-from evolvent.run.dynamics.transient.transient_run import run_transient
-from evolvent.run.scene_run import run_scene
-from evolvent.run.strength.fatigue_run import run_fatigue
-from evolvent.run.strength.strength_run import run_strength
+from evolvent.run.kinds.excitation import Excitation
+from evolvent.run.kinds.fatigue import Fatigue
+from evolvent.run.kinds.run import Run
+from evolvent.run.kinds.strength import Strength
+from evolvent.run.kinds.transient import UNLIKE_STATICS, Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
+from tests.support.running.quiet import quietly
 
 BENT, BETWEEN = 344, 2e-3
 ASKED = "exact.parts=deflected-flanks"
@@ -63,20 +63,20 @@ def test_transient_has_its_statics_on_deflected_flanks(bent: Path, tmp_path: Pat
     and the sentence stays."""
     settings = "transient.speeds_rpm=[500]", "transient.mesh_periods=2", "transient.modes_per_harmonic=0"
     found, asked = tmp_path / "found", tmp_path / "asked"
-    said = run_transient(scene(bent, *settings), found, quiet=True)
-    assert transient_run.UNLIKE_STATICS in said
-    assert transient_run.UNLIKE_STATICS not in run_transient(scene(bent, ASKED, *settings), asked, quiet=True)
-    same(asked, found, "transient.csv", "transient.json", "transient.toml")
-    assert transient_run.UNLIKE_STATICS in run_transient(scene(bent, *settings), found, resume=True, quiet=True)
-    same(asked, found, "transient.csv", "transient.json", "transient.toml")
+    said = quietly(Transient.of(scene(bent, *settings)), found)
+    assert UNLIKE_STATICS in said
+    assert UNLIKE_STATICS not in quietly(Transient.of(scene(bent, ASKED, *settings)), asked)
+    same(asked, found, "transient.csv", "transient.json", "scene.toml")
+    assert UNLIKE_STATICS in quietly(Transient.of(scene(bent, *settings)), found, resume=True)
+    same(asked, found, "transient.csv", "transient.json", "scene.toml")
 
 
 def test_strength_has_its_roots_on_deflected_flanks(bent: Path, tmp_path: Path) -> None:
     """Root stress at uniform and further positions, and the scene that is written."""
     found, asked = tmp_path / "found", tmp_path / "asked"
-    assert run_strength(scene(bent), found, quiet=True)[0] == ON_DEFLECTED
-    assert ON_DEFLECTED not in run_strength(scene(bent, ASKED), asked, quiet=True)
-    same(asked, found, "strength.csv", "root_stress.csv", "strength.toml")
+    assert quietly(Strength.of(scene(bent)), found)[0] == ON_DEFLECTED
+    assert ON_DEFLECTED not in quietly(Strength.of(scene(bent, ASKED)), asked)
+    same(asked, found, "strength.csv", "root_stress.csv", "scene.toml")
 
 
 def test_run_says_that_its_flanks_are_deflected(bent: Path, tmp_path: Path) -> None:
@@ -86,7 +86,7 @@ def test_run_says_that_its_flanks_are_deflected(bent: Path, tmp_path: Path) -> N
     found, asked, stiff = (tmp_path / name for name in ("found", "asked", "stiff"))
 
     def said(folder: Path, *settings: str, resume: bool = False, path: Path = bent) -> tuple[bool, bool, bool]:
-        run_scene(scene(path, *settings), folder, resume, quiet=True)
+        quietly(Run.of(scene(path, *settings)), folder, resume=resume)
         log, summary = ((folder / name).read_text(encoding="utf-8") for name in ("run.log", "summary.json"))
         return ON_DEFLECTED in log, ON_DEFLECTED in json.loads(summary)["warnings"], "skipped, deflected" in log
 
@@ -100,18 +100,18 @@ def test_run_says_that_its_flanks_are_deflected(bent: Path, tmp_path: Path) -> N
 def test_fatigue_has_its_flanks_deflected(bent: Path, tmp_path: Path) -> None:
     """The flanks' loads, and the scene that is written."""
     found, asked = tmp_path / "found", tmp_path / "asked"
-    assert run_fatigue(scene(bent), found, quiet=True)[0] == ON_DEFLECTED
-    assert ON_DEFLECTED not in run_fatigue(scene(bent, ASKED), asked, quiet=True)
-    same(asked, found, "fatigue.csv", "fatigue.toml")
+    assert quietly(Fatigue.of(scene(bent)), found)[0] == ON_DEFLECTED
+    assert ON_DEFLECTED not in quietly(Fatigue.of(scene(bent, ASKED)), asked)
+    same(asked, found, "fatigue.csv", "scene.toml")
 
 
 def test_excitation_is_that_of_deflected_flanks(bent: Path, tmp_path: Path) -> None:
     """Curves under two torques, and a sentence; resumed, nothing is solved again, and the sentence stays."""
     found, asked = tmp_path / "found", tmp_path / "asked"
     own, other = (scene_torques(scene(bent, "sweep.positions=12", *more), TORQUES) for more in ((), (ASKED,)))
-    said = run_excitation(own, found, quiet=True)
-    assert ON_DEFLECTED in said and ON_DEFLECTED not in run_excitation(other, asked, quiet=True)
+    said = quietly(Excitation.under(own), found)
+    assert ON_DEFLECTED in said and ON_DEFLECTED not in quietly(Excitation.under(other), asked)
     same(asked, found, "excitation.csv", "harmonics.csv")
     prepare: Any = None  # nothing calls it
-    assert run_excitation(own, found, resume=True, quiet=True, prepare=prepare) == said
+    assert quietly(Excitation.under(own), found, resume=True, prepare=prepare) == said
     same(asked, found, "excitation.csv", "harmonics.csv")

@@ -16,7 +16,7 @@ import pytest
 
 from evidence.robustness.faults import Struck, arguments, differs, run, struck_again_and_again
 from evolvent.results.archive.store import read_arrays
-from tests.support.running.processes import BROKEN_RUN, Run
+from tests.support.running.processes import BROKEN_RUN, RunScript
 
 STEP, LAST = 20, 500  # kB; the run takes 460, a position and the flanks in contact no less than a step
 
@@ -46,7 +46,7 @@ def test_comparison_of_runs_sees_another_torque(whole: Path, tmp_path: Path) -> 
 
 
 @pytest.mark.mpi
-def test_killed_rank_ends_the_run(whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_killed_rank_ends_the_run(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
     """kill -9 of one of two ranks in its third turn, after two pairs of positions: the run ends at once with a status
     that is not 0, what was complete is whole, and resumed on one rank it is the undisturbed run."""
     out = tmp_path / "out"
@@ -76,7 +76,7 @@ def test_folder_without_write_permission_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("at", [1, 3])
-def test_nan_compliance_is_not_converged(at: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_nan_compliance_is_not_converged(at: int, whole: Path, run_script: RunScript, tmp_path: Path) -> None:
     """A compliance that turns into NaN at the first or third position: status 3 and "not a number", no table, the
     checkpoint before it intact, and once healed --resume completes the run."""
     out = tmp_path / "out"
@@ -93,7 +93,7 @@ def test_nan_compliance_is_not_converged(at: int, whole: Path, run_script: Run, 
 @pytest.mark.evidence
 @pytest.mark.slow
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small file system wants root")
-def test_full_disk_at_every_write_is_resumed(run_script: Run, tmp_path: Path) -> None:
+def test_full_disk_at_every_write_is_resumed(run_script: RunScript, tmp_path: Path) -> None:
     """From a disk without room for the scene to one with room for all: status 1 and one line with file, size, reason
     and remedy; no half-written file, foreign files as they were, and once there is room --resume completes the
     run. The list of files, surfaces, results and fields are among what lacks room."""

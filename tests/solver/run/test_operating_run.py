@@ -9,18 +9,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from evolvent.run.redraw import FROM_TABLES
+from evolvent.run.start import elastic_point
 from mpi4py import MPI
 
 from evolvent.commands.app import Exit
 from evolvent.results.archive.archive import Archive
 from evolvent.results.drawing.table_pictures import from_tables
-from evolvent.run.redraw import FROM_TABLES
-from evolvent.run.start import elastic_point
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
 from evolvent_meshes.arrays import Floats
 from tests.support.checkout import ROOT
-from tests.support.running.processes import BROKEN_RUN, Run
+from tests.support.running.processes import BROKEN_RUN, RunScript
 
 SCENE, VIBRATING = "demos/he2022_wear.toml", ROOT / "demos/he2022_dynamics.toml"
 OUTPUT = tuple(f"output.{name}=false" for name in ("pictures", "animation", "fields", "error_bars"))
@@ -33,7 +33,7 @@ LAST_DIGIT = 2e-8
 """Of the nine that tables have: a rounding of it, and one more of a number that is just above a power of ten."""
 
 
-def computed(run_script: Run, out: Path, *words: str, how: str = "ok", ranks: int = 1) -> int:
+def computed(run_script: RunScript, out: Path, *words: str, how: str = "ok", ranks: int = 1) -> int:
     """The status of a run."""
     settings = [word for setting in SETTINGS for word in ("--set", setting)]
     done = run_script(BROKEN_RUN, how, SCENE, "--out", str(out), "--quiet", *settings, *words, ranks=ranks)
@@ -49,7 +49,7 @@ def columns(path: Path, *without: str) -> dict[str, Floats]:
 
 
 @pytest.fixture(scope="module")
-def whole(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of He's pair worn at 2000 r/min on one rank; only to be read."""
     out = tmp_path_factory.mktemp("operating") / "out"
     computed(run_script, out)
@@ -110,14 +110,14 @@ def test_each_report_is_a_scene_of_its_own(whole: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.mpi
-def test_wear_with_vibration_does_not_depend_on_ranks(whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_wear_with_vibration_does_not_depend_on_ranks(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
     """On two ranks: blocks and vibration within 1e-6."""
     computed(run_script, tmp_path / "out", ranks=2)
     assert_same(tmp_path / "out", whole, 1e-6)
 
 
 @pytest.mark.slow
-def test_killed_twice_and_resumed(whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_killed_twice_and_resumed(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
     """Killed while a block is written, resumed and killed again: depths and vibration as never stopped within 1e-9,
     tables to their last digit."""
     out = tmp_path / "out"
@@ -134,7 +134,7 @@ def test_killed_twice_and_resumed(whole: Path, run_script: Run, tmp_path: Path) 
     assert_same(out, whole, LAST_DIGIT)
 
 
-def test_a_mesh_that_is_a_stiffness_has_no_heaviest_torque(run_script: Run, tmp_path: Path) -> None:
+def test_a_mesh_that_is_a_stiffness_has_no_heaviest_torque(run_script: RunScript, tmp_path: Path) -> None:
     """Worn with the tangent stiffness times the deflection: kept and read again, NaN in the table, null in the file."""
     out = tmp_path / "out"
     computed(run_script, out, "--set", "dynamics.mesh=tangent", "--set", "wear.cycles=2e4", "--set",

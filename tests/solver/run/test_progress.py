@@ -19,7 +19,7 @@ from evolvent.run.output import whereabouts
 from evolvent.run.progress import Progress
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import spur_scene
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
 
 STAGES = ("meshing", "condensing", "positions", "error bars", "tables and pictures")
 
@@ -112,7 +112,7 @@ def test_resumed_finished_run_says_that_nothing_is_left(tmp_path: Path, capsys: 
         assert log.removeprefix(before).count(said) == capsys.readouterr().err.count(said) == expected
 
 
-def test_run_in_a_pipe_prints_its_stages(run_script: Run, tmp_path: Path) -> None:
+def test_run_in_a_pipe_prints_its_stages(run_script: RunScript, tmp_path: Path) -> None:
     """He's pair at two positions: every stage once and in order on stderr, plainly; on stdout the figures, and last
     a line that names tables, pictures and figures that are there. With --quiet nothing but warnings."""
     out = tmp_path / "out"

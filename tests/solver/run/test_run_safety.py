@@ -17,7 +17,7 @@ from evolvent.results.drawing.style import png, sheet, styled
 from evolvent_meshes.files import WriteError
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.run_parts import hashes
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
 
 SETTINGS = (
     "sweep.positions=3", "output.pictures=false", "output.animation=false", "output.error_bars=false",
@@ -290,7 +290,7 @@ if MPI.COMM_WORLD.rank == 0:
 
 
 @pytest.mark.mpi
-def test_serial_commands_under_mpirun_run_once(out: Path, run_script: Run, tmp_path: Path) -> None:
+def test_serial_commands_under_mpirun_run_once(out: Path, run_script: RunScript, tmp_path: Path) -> None:
     """On two ranks: each is done once, by rank 0, and ends; each says what it says once."""
     done = run_script("-c", ALONE, "demos/he2022.toml", str(tmp_path / "a.msh"), str(out), ranks=2, timeout=100.0)
     assert done.returncode == 0, done.stderr

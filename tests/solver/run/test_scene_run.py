@@ -10,7 +10,7 @@ import pytest
 from evolvent.gears.solution.certificates import BALANCE_LIMIT
 from evolvent.results.archive.store import read_arrays
 from tests.support.gear_cases import HELICAL
-from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
+from tests.support.running.processes import BROKEN_RUN, RunScript, on_ranks
 
 SPUR = "demos/he2022.toml"
 QUIET = (
@@ -39,7 +39,7 @@ def assert_same(found: list[dict[str, object]], wanted: list[dict[str, object]])
 
 
 @pytest.fixture(scope="module")
-def on_one_rank(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, object]]:
+def on_one_rank(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, object]]:
     out = tmp_path_factory.mktemp("one") / "out"
     done = run_script(BROKEN_RUN, "ok", SPUR, "--out", str(out), *QUIET, *SHORT)
     assert done.returncode == 0, done.stderr
@@ -49,7 +49,7 @@ def on_one_rank(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> li
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", [2, 4])
 def test_results_do_not_depend_on_ranks(
-    ranks: int, on_one_rank: list[dict[str, object]], run_script: Run, tmp_path: Path
+    ranks: int, on_one_rank: list[dict[str, object]], run_script: RunScript, tmp_path: Path
 ) -> None:
     """He's pair with three friction coefficients on 1, 2 and 4 ranks: the same within 1e-8. Each gear is condensed
     once, its coarse companion too; every position of both is searched once, the odd ones of four by rank 0, the others
@@ -66,7 +66,7 @@ def test_results_do_not_depend_on_ranks(
 
 @pytest.mark.slow
 @pytest.mark.mpi
-def test_helical_results_do_not_depend_on_ranks(run_script: Run, tmp_path: Path) -> None:
+def test_helical_results_do_not_depend_on_ranks(run_script: RunScript, tmp_path: Path) -> None:
     """A coarse helical pair, one gear and, of three friction coefficients that close the pitch at different positions,
     one or two a rank: as on one rank within 1e-8. Two ranks have the last position at hand when one of two coefficients
     closes at the one before."""
@@ -88,7 +88,7 @@ def test_helical_results_do_not_depend_on_ranks(run_script: Run, tmp_path: Path)
 @pytest.mark.mpi
 @pytest.mark.parametrize(("rank", "number", "complete"), [(0, 1, 0), (1, 3, 4)])
 def test_failing_rank_ends_the_run_on_all_ranks(
-    rank: int, number: int, complete: int, run_script: Run, tmp_path: Path
+    rank: int, number: int, complete: int, run_script: RunScript, tmp_path: Path
 ) -> None:
     """An unexpected error on one of three ranks: its message and where it was raised, status 1, no hang; the positions
     of the turns before are kept, two of each."""
@@ -104,7 +104,7 @@ def test_failing_rank_ends_the_run_on_all_ranks(
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
+def test_unbalanced_position_is_an_error(ranks: int, run_script: RunScript, tmp_path: Path) -> None:
     """A position that fails its balance certificate: status 3, the numbers, and it is not written."""
     out = tmp_path / "out"
     done = run_script(BROKEN_RUN, "unbalanced", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
@@ -116,7 +116,7 @@ def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: 
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_unbalanced_pitch_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
+def test_unbalanced_pitch_is_an_error(ranks: int, run_script: RunScript, tmp_path: Path) -> None:
     """A pitch that fails its balance certificate: status 3, the numbers, and no result."""
     out = tmp_path / "out"
     done = run_script(BROKEN_RUN, "leaking", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)

@@ -13,21 +13,22 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista
+from evolvent.run.coarse_run import solve_companion
+from evolvent.run.start import checked_meshes
 
 from evidence.benchmarks.gears.skips import differences
 from evolvent.gears.meshing import levelled_meshes
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.run_data import read_run
-from evolvent.run.coarse_run import solve_companion
-from evolvent.run.pitch_run import pitch_of
-from evolvent.run.scene_run import run_scene
-from evolvent.run.start import checked_meshes
+from evolvent.run.kept_pitch import pitch_of
+from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.skips import skip_named
 from tests.support.gear_cases import HELICAL
-from tests.support.running.processes import BROKEN_RUN, Run
+from tests.support.running.processes import BROKEN_RUN, RunScript
+from tests.support.running.quiet import quietly
 
 SMALL = (
     "mesh.order=2", "mesh.elements_per_contact_width=0.8", "pinion.face_width_mm=4", "wheel.face_width_mm=4",
@@ -58,7 +59,7 @@ def levels() -> Any:
 def out(levels: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A finished run with everything that a scene may ask for."""
     folder = tmp_path_factory.mktemp("levels") / "out"
-    run_scene(small_scene(*EVERYTHING), folder, quiet=True)
+    quietly(Run.of(small_scene(*EVERYTHING)), folder)
     return folder
 
 
@@ -106,7 +107,7 @@ def test_a_finished_run_is_resumed_without_condensing(
     shutil.copytree(out, folder)
     monkeypatch.setattr("evolvent.run.start.prepare_model", lambda *_, **__: pytest.fail("condensed again"))
     scene = load_scene(folder / "scene.toml", ["output.deformation=false", *BARE[:3]])
-    run_scene(scene, folder, resume=True, quiet=True)
+    quietly(Run.of(scene), folder, resume=True)
     assert summary_of(folder)["positions"] == summary_of(out)["positions"]
     assert summary_of(folder)["dofs"] == summary_of(out)["dofs"]
     monkeypatch.setattr(levelled_meshes, "MOST_DOFS", 10**9)
@@ -120,7 +121,7 @@ def test_one_mesh_gives_the_same_within_a_hundredth(out: Path, levels: None, tmp
     nothing."""
     scene = small_scene(*BARE, 'exact.parts=["two-level"]')
     assert gear_problem(scene).mesh.two_level is False
-    run_scene(scene, tmp_path / "out", quiet=True)
+    quietly(Run.of(scene), tmp_path / "out")
     summary = summary_of(tmp_path / "out")
     assert "two-level" not in {skip["name"] for skip in summary["skipped"]} and summary["flank_dofs"] == 0
     found = differences(summary_of(out), summary)
@@ -144,7 +145,7 @@ def test_the_companion_is_twice_as_coarse_in_levels(out: Path, levels: None) -> 
 
 @pytest.mark.slow
 @pytest.mark.mpi
-def test_ranks_and_resumed_runs_agree(out: Path, run_script: Run, tmp_path: Path) -> None:
+def test_ranks_and_resumed_runs_agree(out: Path, run_script: RunScript, tmp_path: Path) -> None:
     """Killed on one rank after a position, gone on with on two ranks: as on one rank within 1e-6."""
     scene, folder = tmp_path / "scene.toml", tmp_path / "out"
     scene.write_text(small_scene(*BARE).resolved_toml(), encoding="utf-8")

@@ -18,7 +18,7 @@ from evolvent.wear.results.archive import read_checkpoint
 from evolvent.wear.results.report import read_worn
 from evolvent_meshes.arrays import Floats
 from tests.support.gear_cases import HELICAL
-from tests.support.running.processes import BROKEN_RUN, Run
+from tests.support.running.processes import BROKEN_RUN, RunScript
 
 SPUR = "demos/he2022.toml"
 QUIET = (
@@ -32,7 +32,7 @@ WEAR = (
 )
 
 
-def computed(run_script: Run, out: Path, *settings: str, how: str = "ok", ranks: int = 1, scene: str = SPUR) -> int:
+def computed(run_script: RunScript, out: Path, *settings: str, how: str = "ok", ranks: int = 1, scene: str = SPUR) -> int:
     """The status of a run."""
     done = run_script(BROKEN_RUN, how, scene, "--out", str(out), *QUIET, *settings, ranks=ranks)
     assert how != "ok" or done.returncode == 0, done.stderr
@@ -60,7 +60,7 @@ def assert_same(one: Path, other: Path, tolerance: float) -> None:
 
 
 @pytest.fixture(scope="module")
-def worn_pair(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def worn_pair(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of He's pair worn to 400,000 cycles on one rank, without friction; only to be read."""
     out = tmp_path_factory.mktemp("worn") / "out"
     computed(run_script, out, *SHORT, *WEAR)
@@ -68,7 +68,7 @@ def worn_pair(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path
 
 
 @pytest.fixture(scope="module")
-def followed(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def followed(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same with meshes that follow the wear; only to be read."""
     out = tmp_path_factory.mktemp("followed") / "out"
     computed(run_script, out, *SHORT, *WEAR, "--set", "wear.refresh_um=0.2")
@@ -78,7 +78,7 @@ def followed(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("friction", ["0.0", "0.1"])
-def test_wear_does_not_depend_on_ranks(friction: str, worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
+def test_wear_does_not_depend_on_ranks(friction: str, worn_pair: Path, run_script: RunScript, tmp_path: Path) -> None:
     """He's pair without and with friction, K/H three times as large on the wheel, on 1, 2 and 4 ranks: the same blocks
     and depths within 1e-8."""
     settings = (*SHORT, *WEAR, "--set", f"contact.friction={friction}")
@@ -93,7 +93,7 @@ def test_wear_does_not_depend_on_ranks(friction: str, worn_pair: Path, run_scrip
 @pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("how", ["kill-before-18", "full-14"])
-def test_interrupted_wear_study_is_resumed(how: str, followed: Path, run_script: Run, tmp_path: Path) -> None:
+def test_interrupted_wear_study_is_resumed(how: str, followed: Path, run_script: RunScript, tmp_path: Path) -> None:
     """Killed while the fourth block is written, or the disk full at the second; resumed on two ranks, the meshes
     following the wear in between: the same as never stopped within 1e-8. Resumed once more nothing is left to do."""
     whole, halves = followed, tmp_path / "halves"
@@ -110,7 +110,7 @@ def test_interrupted_wear_study_is_resumed(how: str, followed: Path, run_script:
     assert "resumed after 400000 of 400000 cycles" in (halves / "run.log").read_text(encoding="utf-8")
 
 
-def test_wear_study_of_another_scene_is_not_resumed(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
+def test_wear_study_of_another_scene_is_not_resumed(worn_pair: Path, run_script: RunScript, tmp_path: Path) -> None:
     """With another K/H: status 2, and what was there stays."""
     out = shutil.copytree(worn_pair, tmp_path / "out")
     more = (*SHORT, *WEAR, "--set", "wear.wheel_mm2_per_N=4e-10", "--resume")
@@ -118,7 +118,7 @@ def test_wear_study_of_another_scene_is_not_resumed(worn_pair: Path, run_script:
     assert blocks(out) == pytest.approx(blocks(worn_pair))
 
 
-def test_worn_pair_is_solved_from_its_own_scene(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
+def test_worn_pair_is_solved_from_its_own_scene(worn_pair: Path, run_script: RunScript, tmp_path: Path) -> None:
     """The worn pair solved from its own scene: the same transmission error within 3e-4 of the wear, on a finer mesh
     within 2 % of it; and less its mean it is not what it was at the beginning. Its folder is a run to which nothing is
     left to add."""
@@ -141,7 +141,7 @@ def errors(out: Path) -> Floats:
     return np.array([position["transmission_error_um"] for position in summary["positions"]])
 
 
-def test_wear_continues_from_flank_charts(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
+def test_wear_continues_from_flank_charts(worn_pair: Path, run_script: RunScript, tmp_path: Path) -> None:
     """Worn to 100,000 cycles and, from the charts that it left, on to 400,000, against one study: depths within the
     errors of the blocks."""
     scene = worn_pair / "worn_100000" / "scene.toml"
@@ -155,7 +155,7 @@ def test_wear_continues_from_flank_charts(worn_pair: Path, run_script: Run, tmp_
 
 @pytest.mark.slow
 @pytest.mark.parametrize("blocks_", ["implicit", "explicit"])
-def test_helical_pair_wears_in_the_ratio_of_coefficients(blocks_: str, run_script: Run, tmp_path: Path) -> None:
+def test_helical_pair_wears_in_the_ratio_of_coefficients(blocks_: str, run_script: RunScript, tmp_path: Path) -> None:
     """A coarse helical pair in 3D with friction: depths nowhere negative, both gears' volumes in the ratio of their
     K/H and of how often a tooth meets, and the map of the worn flanks drawn where pictures are asked for."""
     scene = tmp_path / "helical.toml"

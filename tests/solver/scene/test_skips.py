@@ -22,15 +22,16 @@ from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch
 from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.archive.archive import fingerprint
-from evolvent.run.pitch_run import pitch_of
-from evolvent.run.scene_run import run_scene
+from evolvent.run.kept_pitch import pitch_of
+from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import SKIPS, one_mesh_reason, skip_named, skipped, switched_off
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
 from tests.support.running.patches import calling_first
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
+from tests.support.running.quiet import quietly
 from tests.support.scene_texts import WEAR
 
 SPUR = ("pair.helix_angle_deg=0", "mesh.order=2", "mesh.elements_per_contact_width=2")
@@ -75,7 +76,7 @@ pair which does not."""
 
 def solved(scene: Scene, out: Path) -> dict[str, Any]:
     """The summary of a run."""
-    run_scene(scene, out, quiet=True)
+    quietly(Run.of(scene), out)
     summary: dict[str, Any] = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     return summary
 
@@ -261,7 +262,7 @@ def test_check_names_what_is_off(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 
 @pytest.mark.mpi
-def test_ranks_agree_the_long_way(run_script: Run, tmp_path: Path) -> None:
+def test_ranks_agree_the_long_way(run_script: RunScript, tmp_path: Path) -> None:
     """Whole gears, prepared again for each of two friction coefficients, on two ranks: as the usual way on one within
     1e-8."""
     scene = tmp_path / "spur.toml"

@@ -24,7 +24,7 @@ MARKED = "EVOLVENT_TEST_STARTS_MPIRUN"
 """Environment variable that is set while a test marked `mpi` runs; see conftest.py."""
 
 
-class Run(Protocol):
+class RunScript(Protocol):
     """The fixture `run_script`, see `run_script` below."""
 
     def __call__(self, script: str, *arguments: str, ranks: int = 1, timeout: float = 300.0) -> Done: ...

@@ -13,7 +13,7 @@ from evolvent.dynamics.results.transient.beginning import TRANSIENT_START
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.results.tables.table import SceneValue
+from evolvent.results.tables.table import SCENE_TITLE, SceneValue
 
 FIGURES = "evolvent.dynamics.figures"
 EXCITATION_PICTURE = TablePicture(
@@ -30,15 +30,12 @@ OPERATION_PICTURE = TablePicture(
     (OPERATION, HISTORIES, EXCITATION, SceneValue("scene.toml", "dynamics.series_stiffness_N_per_um")),
     f"{FIGURES}.operation:operation_picture",
 )
-TRANSIENT_SCENE = SceneValue("transient.toml", "title")
-"""Title of the scene that was computed, from its own transient.toml: a run's scene.toml beside it may have other
-values."""
 TRANSIENT_PICTURES = (
     TablePicture(
-        "transient.png", (TRANSIENT_SCENE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS),
+        "transient.png", (SCENE_TITLE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS),
         f"{FIGURES}.transient:transient_picture",
     ),
     TablePicture(
-        "transient_start.png", (TRANSIENT_SCENE, TRANSIENT_START), f"{FIGURES}.transient_start:start_picture"
+        "transient_start.png", (SCENE_TITLE, TRANSIENT_START), f"{FIGURES}.transient_start:start_picture"
     ),
 )

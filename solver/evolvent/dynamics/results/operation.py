@@ -6,20 +6,19 @@ from evolvent.dynamics.operating_point import Operation
 from evolvent.dynamics.operation_figures import OperationFacts
 from evolvent.dynamics.results.histories import HISTORIES, Motion, history_rows
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.table import Record
+from evolvent.results.tables.table import Filled, Record
 
 OPERATION = Record("operation.json", OperationFacts)
+OPERATION_TABLES = tuple(table.name for table in (EXCITATION, HARMONICS, HISTORIES, OPERATION))
 
 
-def write_operation(folder: RunFolder, operation: Operation, direction: str, radius: float) -> None:
-    """Writes excitation.csv, harmonics.csv, histories.csv and operation.json.
-
-    direction: up or down. radius: base radius of the gear with the torque [mm]. Raises WriteError, FolderError.
-    """
+def operation_tables(operation: Operation, direction: str, radius: float) -> list[Filled]:
+    """excitation.csv, harmonics.csv, histories.csv and operation.json. direction: up or down; radius: base radius of
+    the gear with the torque [mm]."""
     figures = OperationFacts.of(operation)
-    EXCITATION.write(folder, excitation_rows(operation.excitation, radius))
-    HARMONICS.write(folder, harmonic_rows(operation.excitation, radius))
     motion = Motion(figures.speed_rpm, direction, operation.period, operation.repeats, operation.paths)
-    HISTORIES.write(folder, history_rows([motion]))
-    OPERATION.write(folder, figures)
+    return [
+        EXCITATION.of(excitation_rows(operation.excitation, radius)),
+        HARMONICS.of(harmonic_rows(operation.excitation, radius)), HISTORIES.of(history_rows([motion])),
+        OPERATION.of(figures),
+    ]

@@ -1,8 +1,10 @@
 """Results on disk for resuming, plotting and later studies: NumPy archives, each written atomically.
 
     OUT/results/gears.npz            surfaces of both sector meshes
-    OUT/results/position_0003.npz    one swept position: converged results at each friction coefficient
-    OUT/results/state.npz            number of complete positions, and the sweep's state after them
+    OUT/results/position_0003.npz    one swept position: converged results at each friction coefficient, and the state
+                                     of the sweep after it
+    OUT/results/state.npz            number of complete positions, and the state after the last of them
+    OUT/results/coarse_*.npz         the same of the coarse companion that gives the error bars
 
 A file is written under a temporary name and then renamed, so that a run killed at any moment leaves complete files
 only. The state is written last and removed first: all positions that it counts exist and belong to one run.
@@ -29,14 +31,22 @@ from evolvent.scene.scene import Scene, SceneError, derived_values, kept_scene
 from evolvent.scene.schema.old_names import first_names
 from evolvent_meshes.gears.pair import GearPair
 
-STATE = "results/state.npz"
+STATE, IN_POSITION = "state.npz", "state/"
+SAME_ANGLE = 1e-8
+"""Largest difference between rotations [rad] that are taken for the same."""
+COARSE = "coarse_"
+"""Beginning of the names of files of the coarse companion."""
 
 
 class Archive:
-    """The results of a scene in the folder OUT. Only rank 0 writes. command: the one that a message names."""
+    """The results of a scene in the folder OUT. Only rank 0 writes.
 
-    def __init__(self, folder: Path, scene: Scene, command: str = "run") -> None:
-        self.command = command
+    command: the one that a message names.
+    part: beginning of the names of files: empty for the results that are reported, or `COARSE`.
+    """
+
+    def __init__(self, folder: Path, scene: Scene, command: str = "run", part: str = "") -> None:
+        self.command, self.part = command, part
         self.out, self.folder, self.files = folder, folder / "results", RunFolder(folder)
         self.scene = scene
         self.store = Store(self.files, fingerprint(scene), self._another, "fingerprint")
@@ -47,7 +57,7 @@ class Archive:
         for name, shape in zip(("pinion", "wheel"), shapes):
             arrays |= {f"{name}/points": shape.points, f"{name}/flank_nodes": shape.flank_nodes}
             arrays |= {f"{name}/facets/{group}": f for group, f in shape.facets.items()}
-        self.store.write("results/gears.npz", arrays)
+        self.store.write(self.name_of("gears.npz"), arrays)
 
     def check_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
         """Raises ArchiveError if the archived results were computed on other meshes than these."""
@@ -61,25 +71,21 @@ class Archive:
 
     def read_gears(self) -> tuple[GearShape, GearShape]:
         """The surfaces of pinion and wheel. Raises ArchiveError."""
-        return read_as(self.folder / "gears.npz", lambda arrays: (_shape(arrays, "pinion"), _shape(arrays, "wheel")))
+        path = self.out / self.name_of("gears.npz")
+        return read_as(path, lambda arrays: (_shape(arrays, "pinion"), _shape(arrays, "wheel")))
 
     def write_position(self, index: int, position: SweptPosition) -> None:
         """Writes the position with this index and the state after it. Raises WriteError, FolderError."""
-        arrays: Arrays = {
-            "angle": position.angle, "again": position.again, "closes": position.closes, "count": len(position.results),
-        }
-        for i, result in enumerate(position.results):
-            arrays |= {f"{i}/{name}": value for name, value in result_arrays(result).items()}
-        self.store.write(f"results/position_{index:04d}.npz", arrays)
-        self.store.write(STATE, _state_arrays(index + 1, position.state))
+        self.store.write(self.name_of(f"position_{index:04d}.npz"), _position_arrays(position))
+        self.store.write(self.name_of(STATE), {"complete": index + 1, **state_arrays(position.state, "")})
 
     def read_positions(self, pair: GearPair) -> list[SweptPosition]:
-        """The positions of one pitch, each as it was solved last, without states. Raises ArchiveError."""
+        """The positions of one pitch, each as it was solved last. Raises ArchiveError."""
         return one_pitch(self.read_sweep(pair))
 
     def read_sweep(self, pair: GearPair) -> list[SweptPosition]:
-        """All positions in the order of their solution, without states. Raises ArchiveError."""
-        count = self.store.read(STATE, lambda arrays: int(arrays["complete"]))
+        """All positions in the order of their solution. Raises ArchiveError."""
+        count = self.store.read(self.name_of(STATE), lambda arrays: int(arrays["complete"]))
         return [self._position(k, pair) for k in range(count or 0)]
 
     def read_state(self, pair: GearPair) -> SweepState | None:
@@ -87,11 +93,28 @@ class Archive:
 
         Raises ArchiveError if the archive belongs to another scene.
         """
-        return self.store.read(STATE, lambda arrays: _state(arrays, pair))
+        return self.store.read(self.name_of(STATE), lambda arrays: sweep_state(arrays, "", pair))
+
+    def write_between(self, position: SweptPosition) -> None:
+        """Writes a position that lies between those of the pitch. Raises WriteError, FolderError."""
+        self.store.write(self.name_of(f"angle_{position.angle:.15g}.npz"), _position_arrays(position))
+
+    def read_between(self, angle: float, pair: GearPair) -> SweptPosition | None:
+        """The position of `write_between` at a pinion rotation [rad], to `SAME_ANGLE`; None where there is none. Raises
+        ArchiveError where it belongs to another scene."""
+        pattern = Path(self.name_of("angle_*.npz"))
+        for path in sorted(self.folder.glob(pattern.name)):
+            if abs(float(path.stem.rpartition("_")[2]) - angle) < SAME_ANGLE:
+                return self.store.read(self.name_of(path.name.removeprefix(self.part)), lambda a: _position(a, pair))
+        return None
 
     def holds_scene(self) -> bool:
         """Whether the archive holds positions of this scene. Raises ArchiveError if it cannot be read."""
-        return self.store.holds(STATE)
+        return self.store.holds(self.name_of(STATE))
+
+    def name_of(self, file: str) -> str:
+        """Name below OUT of a file of this part of the results."""
+        return f"results/{self.part}{file}"
 
     def _another(self, path: Path) -> str:
         """Message on a file that belongs to another scene."""
@@ -113,13 +136,12 @@ class Archive:
         return f"another version of Evolvent: no key differs from {path}"
 
     def _position(self, index: int, pair: GearPair) -> SweptPosition:
-        return read_as(self.folder / f"position_{index:04d}.npz", lambda arrays: _position(arrays, pair))
+        return read_as(self.out / self.name_of(f"position_{index:04d}.npz"), lambda arrays: _position(arrays, pair))
 
 
 def fingerprint(scene: Scene) -> str:
     """SHA-256 of all that the results depend on: the scene's values without its title and output section, and the
-    contents, not the paths, of its flank charts. Keys have their first names: archives of earlier versions stay valid.
-    """
+    contents, not the paths, of its flank charts."""
     bare = essence(scene)
     values = json.dumps([first_names(bare.model_dump(mode="json")), derived_values(bare), *charts(scene)])
     return hashlib.sha256(values.encode()).hexdigest()
@@ -131,31 +153,45 @@ def _shape(arrays: Arrays, name: str) -> GearShape:
     return GearShape(arrays[f"{name}/points"], facets, arrays[f"{name}/flank_nodes"])
 
 
+def _position_arrays(position: SweptPosition) -> Arrays:
+    """A swept position as arrays, with the state after it."""
+    arrays: Arrays = {
+        "angle": position.angle, "again": position.again, "closes": position.closes, "count": len(position.results),
+    }
+    for i, result in enumerate(position.results):
+        arrays |= {f"{i}/{name}": value for name, value in result_arrays(result).items()}
+    return arrays | state_arrays(position.state, IN_POSITION)
+
+
 def _position(arrays: Arrays, pair: GearPair) -> SweptPosition:
-    """A swept position, without the state of the sweep after it."""
+    """A swept position from its arrays; archives of earlier versions have no state in it."""
     results = tuple(archived_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
-    state, again, closes = SweepState((0.0, 0.0), ()), bool(arrays["again"]), bool(arrays["closes"])
-    return SweptPosition(float(arrays["angle"]), results, state, again, closes)
+    has_state = f"{IN_POSITION}memories" in arrays
+    state = sweep_state(arrays, IN_POSITION, pair) if has_state else SweepState((0.0, 0.0), ())
+    return SweptPosition(float(arrays["angle"]), results, state, bool(arrays["again"]), bool(arrays["closes"]))
 
 
-def _state_arrays(complete: int, state: SweepState) -> Arrays:
-    arrays: Arrays = {"complete": complete, "extra": np.array(state.beyond_nominal), "memories": len(state.histories)}
+def state_arrays(state: SweepState, start: str) -> Arrays:
+    """The state of a sweep as arrays whose names begin with `start`."""
+    arrays: Arrays = {f"{start}extra": np.array(state.beyond_nominal), f"{start}memories": len(state.histories)}
     for i, history in enumerate(state.histories):
         if history is not None:
-            arrays |= {
-                f"{i}/angle": history.stand.angle, f"{i}/extra": np.array(history.stand.beyond_nominal),
-                f"{i}/pinion_rows": history.rows[0], f"{i}/wheel_rows": history.rows[1],
-                f"{i}/pinion_forces": history.forces[0], f"{i}/wheel_forces": history.forces[1],
-                f"{i}/flux": history.flux,
+            named = {
+                "angle": history.stand.angle, "extra": np.array(history.stand.beyond_nominal),
+                "pinion_rows": history.rows[0], "wheel_rows": history.rows[1],
+                "pinion_forces": history.forces[0], "wheel_forces": history.forces[1], "flux": history.flux,
             }
+            arrays |= {f"{start}{i}/{name}": value for name, value in named.items()}
     return arrays
 
 
-def _state(arrays: Arrays, pair: GearPair) -> SweepState:
+def sweep_state(arrays: Arrays, start: str, pair: GearPair) -> SweepState:
+    """The state of a sweep from `state_arrays`. Raises KeyError where one is missing."""
     histories = tuple(
-        _history(arrays, f"{i}/", pair) if f"{i}/angle" in arrays else None for i in range(int(arrays["memories"]))
+        _history(arrays, f"{start}{i}/", pair) if f"{start}{i}/angle" in arrays else None
+        for i in range(int(arrays[f"{start}memories"]))
     )
-    extra = arrays["extra"]
+    extra = arrays[f"{start}extra"]
     return SweepState((float(extra[0]), float(extra[1])), histories)
 
 

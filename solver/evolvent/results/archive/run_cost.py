@@ -12,6 +12,8 @@ from evolvent_meshes.files import open_file
 
 FILE = Path("results/cost.json")
 """File of the cost below OUT."""
+BEFORE = "run"
+"""Command of a file without one: earlier versions wrote the cost of this command alone."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +48,13 @@ class Cost:
     """Wall time of each stage."""
     memory_MB: float = 0.0
     """Largest resident memory, summed over the ranks [MB]."""
+    command: str = ""
+    """Command that has computed; empty where nothing was computed."""
 
     def __add__(self, other: Cost) -> Cost:
         """Cost of two successive parts of a run."""
-        return Cost(self.timings + other.timings, max(self.memory_MB, other.memory_MB))
+        memory = max(self.memory_MB, other.memory_MB)
+        return Cost(self.timings + other.timings, memory, other.command or self.command)
 
 
 def write_cost(folder: RunFolder, cost: Cost) -> None:
@@ -66,7 +71,7 @@ def read_cost(folder: RunFolder) -> Cost:
         with open_file(path) as file:
             values = json.load(file)
         seconds = [float(values["timings"][field.name]) for field in fields(Timings)]
-        return Cost(Timings(*seconds), float(values["memory_MB"]))
+        return Cost(Timings(*seconds), float(values["memory_MB"]), str(values.get("command", BEFORE)))
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ArchiveError(
             f"{path}: wanted what the run has cost so far, found no such thing ({type(error).__name__}: {error}); "

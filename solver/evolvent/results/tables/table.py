@@ -28,6 +28,16 @@ TRUTHS = {True: True, False: False, "True": True, "False": False}
 
 
 @dataclass(frozen=True)
+class Filled:
+    """A file whose content is known and not written yet."""
+
+    name: str
+    """Name of the file."""
+    write: Callable[[RunFolder], None]
+    """Function that writes it into a folder. Raises WriteError, FolderError."""
+
+
+@dataclass(frozen=True)
 class Table(Generic[Row]):
     """A file of rows: a line each of a CSV file, or an entry each of a JSON list."""
 
@@ -35,6 +45,10 @@ class Table(Generic[Row]):
     """Name of the file; its ending gives the format."""
     row: type[Row]
     """Dataclass of the rows."""
+
+    def of(self, rows: Iterable[Row]) -> Filled:
+        """The table with its rows, to be written."""
+        return Filled(self.name, lambda folder: self.write(folder, rows))
 
     def write(self, folder: RunFolder, rows: Iterable[Row]) -> None:
         """Writes the file; none where there are no rows. Raises WriteError, FolderError."""
@@ -69,6 +83,10 @@ class Record(Generic[Row]):
     row: type[Row]
     """Dataclass of the content."""
 
+    def of(self, content: Row) -> Filled:
+        """The file with its content, to be written."""
+        return Filled(self.name, lambda folder: self.write(folder, content))
+
     def write(self, folder: RunFolder, content: Row) -> None:
         """Writes the file. Raises WriteError, FolderError."""
         folder.write_text(self.name, json_text(asdict(content)))  # type: ignore[call-overload]  # a dataclass
@@ -101,6 +119,10 @@ class SceneValue:
         for part in self.key.split("."):
             value = value.get(part) if isinstance(value, dict) else None
         return value
+
+
+SCENE_TITLE = SceneValue("scene.toml", "title")
+"""Title of the scene that was computed."""
 
 
 def unusable(path: Path, wanted: str, found: str) -> ArchiveError:

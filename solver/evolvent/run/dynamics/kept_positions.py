@@ -16,16 +16,18 @@ from pathlib import Path
 import numpy as np
 
 from evolvent.dynamics.excitation.loaded_mesh import COLUMNS
-from evolvent.results.archive.archive import fingerprint
+from evolvent.results.archive.archive import COARSE, fingerprint
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Arrays, Store
 from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent_meshes.arrays import Floats
 
-KEPT, KEPT_COARSE = "results/excitation.npz", "results/excitation_coarse.npz"
+KEPT = "results/excitation.npz", "results/excitation*.npz"
+"""Name of the file that is there first, and pattern of all of them."""
+NAMES = {"": "results/excitation.npz", COARSE: "results/excitation_coarse.npz"}
+"""Name of the file by the part of the results, see `Archive`."""
 DEFLECTED = ".npz", "_deflected.npz"
 """End of the names of these files, and its replacement for positions on deflected flanks."""
-KEPT_DEFLECTED = KEPT.replace(*DEFLECTED), KEPT_COARSE.replace(*DEFLECTED)
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,6 @@ class KeptPositions:
     """Files of the call, with the identity of the gears, their torques and positions (`identity`)."""
     name: str
     """Name of the file below OUT."""
-    resume: bool
-    """Whether the call continues from the positions of an earlier one."""
 
     @property
     def deflected(self) -> KeptPositions:
@@ -45,9 +45,9 @@ class KeptPositions:
         return replace(self, name=self.name.replace(*DEFLECTED))
 
     def read(self) -> dict[int, Floats]:
-        """Number of a position -> (m, 4) figures under each torque (`figures_of`); none where the call begins anew, or
-        there is no file. Raises ArchiveError where it is that of other gears, torques or positions."""
-        return (self.store.read(self.name, self._figures) or {}) if self.resume else {}
+        """Number of a position -> (m, 4) figures under each torque (`figures_of`); none where there is no file. Raises
+        ArchiveError where it is that of other gears, torques or positions."""
+        return self.store.read(self.name, self._figures) or {}
 
     def _figures(self, arrays: Arrays) -> dict[int, Floats]:
         """Figures of the positions in archived arrays, by the number of the position. Raises ArchiveError where the
@@ -67,10 +67,9 @@ class KeptPositions:
         self.store.write(self.name, {"numbers": numbers, "figures": np.array([found[i] for i in numbers])})
 
 
-def kept_positions(loads: SceneTorques, out: Path, resume: bool) -> tuple[KeptPositions, KeptPositions]:
-    """Positions on the meshes of the scene and on those of the companion."""
-    store = Store(RunFolder(out), identity(loads), another)
-    return KeptPositions(store, KEPT, resume), KeptPositions(store, KEPT_COARSE, resume)
+def kept_positions(loads: SceneTorques, folder: RunFolder, part: str = "") -> KeptPositions:
+    """Positions in a folder. part: of the results, see `Archive`."""
+    return KeptPositions(Store(folder, identity(loads), another), NAMES[part])
 
 
 def another(path: Path) -> str:

@@ -1,92 +1,54 @@
-"""The vibration of a scene's gears over the speed, from start to finish. `evolvent dynamics` calls only this."""
+"""The vibration of a scene's gears over the speed, on their excitation; warnings on it."""
 
 from __future__ import annotations
 
-from functools import partial
-from pathlib import Path
-
-from mpi4py import MPI
+from dataclasses import dataclass
 
 from evolvent.dynamics.body_sentences import bodies_said
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.figures.all import VIBRATION_PICTURES
-from evolvent.dynamics.of_scene import check_vibration, drive_settings
 from evolvent.dynamics.oscillator.response import MESHES
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
-from evolvent.dynamics.results.curves import CoarseExcitation
-from evolvent.dynamics.results.histories import HISTORIES, history_rows, motions
-from evolvent.dynamics.results.response import (
-    BRANCH,
-    DYNAMICS,
-    RESPONSE,
-    branch_rows,
-    largest_force,
-    response_rows,
-    speed_of,
-    summary,
-)
-from evolvent.dynamics.results.spectrum import SPECTRUM, spectrum_rows
-from evolvent.dynamics.results.torque_map import TORQUE_MAP
-from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import Preparer, prepare_model
+from evolvent.dynamics.results.histories import Motion, motions
+from evolvent.dynamics.results.response import largest_force, speed_of
+from evolvent.dynamics.results.response_errors import Vibration, VibrationErrors
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, MethodB, method_b
 from evolvent.gears.problem.iso_stiffness import outside_range
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.drawing.picture_files import draw
-from evolvent.results.drawing.table_pictures import from_tables
-from evolvent.run.dynamics.excitation import (
-    companion_of,
-    computed_excitation,
-    excitation_warnings,
-    write_excitation,
-    writing_results,
-)
-from evolvent.run.dynamics.kept_positions import kept_positions
-from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
+from evolvent.run.dynamics.excitation import SolvedExcitation
+from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.dynamics.speeds import WAYS, map_list, sweep_at, sweep_list
 from evolvent.run.dynamics.torque_map import TorqueMap, torque_map
 from evolvent.run.dynamics.vibration_errors import SWEEPS, errors_over_speed, vibration_of
-from evolvent.run.dynamics.written_files import OF_DYNAMICS
-from evolvent.run.progress import OUTPUT, Progress
-from evolvent.run.start import with_bodies
-from evolvent.scene.scene import Scene
+from evolvent.run.progress import Progress
 from evolvent.scene.schema.dynamics import DynamicsSection
-from evolvent.scene.skips import wanted_output
-from evolvent.scene.vibration_limits import doubtful
 
-BODIES, SPEEDS, SPEEDS_AGAIN, MAP = "gear bodies", "speeds", "speeds, error bars", "torque map"
+SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
 
 
-def run_dynamics(
-    scene: Scene, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False,
-    prepare: Preparer = prepare_model,
-) -> list[str]:
-    """Computes excitation and vibration and writes their tables and pictures to `out`. Returns sentences on what a
-    reader has to know, pictures that could not be drawn among them. Collective.
+@dataclass(frozen=True)
+class SweptVibration:
+    """Vibration of a pair over the speed."""
 
-    scene: with or without a section [dynamics]; its wear is left out.
-    resume: go on from the positions of the excitation that an earlier call has solved; the rest is computed anew.
-    overwrite: begin anew, and replace what an earlier call has written.
-    prepare: prepares gears that other calls share.
-
-    Raises as `run_excitation`, and NoSteadyState.
-    """
-    comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
-    check_vibration(scene)
-    section = scene.dynamics or DynamicsSection()
-    loads = scene_torques(scene, section.torque_percents)
-    fine, coarse = kept_positions(loads, out, resume)
-    settings = drive_settings(loads.problem.pair, section)
-    with writing_results(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
-        progress.stage(BODIES)
-        settings = with_bodies(settings, loads.problem, section, comm)
-        excitation = computed_excitation(loads, comm, progress, fine, prepare)
-        companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
-        written = partial(_written, excitation, companion, loads, section, settings, out, progress)
-        return said + on_first(comm, written)
+    own: Vibration
+    """The pair under the scene's torque, and figures of its motions."""
+    settings: DriveSettings
+    """Inertias, damping and backlash."""
+    swept: SpeedSweep
+    """Motions of the pair that runs up and down."""
+    iso: MethodB
+    """Dynamic factor of ISO 6336-1."""
+    errors: VibrationErrors
+    """Error bars."""
+    motions: list[Motion]
+    """Motions over time at the speeds of the section."""
+    over_torque: TorqueMap
+    """Map over torque and speed."""
+    share: tuple[float, float]
+    """Largest mesh force, and that of the heaviest torque [N]."""
+    warnings: tuple[str, ...]
+    """Warnings on the vibration, a sentence each."""
 
 
 def accuracy(section: DynamicsSection) -> Accuracy:
@@ -97,11 +59,12 @@ def accuracy(section: DynamicsSection) -> Accuracy:
     )
 
 
-def _written(
-    excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques, section: DynamicsSection,
-    settings: DriveSettings, out: Path, progress: Progress,
-) -> list[str]:
-    """Sweeps the speeds and writes all files, in place of those of an earlier call. On rank 0 alone."""
+def swept_vibration(
+    solved: SolvedExcitation, loads: SceneTorques, section: DynamicsSection, settings: DriveSettings,
+    progress: Progress,
+) -> SweptVibration:
+    """Sweeps the speeds on an excitation. On rank 0 alone. Raises NoSteadyState."""
+    excitation, companion = solved.excitation, solved.companion
     percents, first = sorted(section.torque_percents), loads.problem
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
@@ -110,30 +73,16 @@ def _written(
     progress.stage(SPEEDS, WAYS * len(speeds))
     swept = sweep_at(vibrating, speeds, progress.advance)
     own = vibration_of(vibrating, swept)
-    found = own.found
     if companion.excitation is not None:
         progress.stage(SPEEDS_AGAIN, SWEEPS * WAYS * len(speeds))
     errors = errors_over_speed(own, excitation, companion, first, settings, speeds, progress.advance)
     moving = motions(vibrating, swept, section.histories_rpm)
     over_torque = _over_torque(excitation, first, vibrating, settings, section, progress)
-    progress.stage(OUTPUT)
-    share = largest_force(found), float(excitation.loaded.forces[-1])
-    excited = excitation_warnings(excitation, companion, loads)
-    said = *excited, *doubtful(loads.scene.planned_vibration())
-    said = *said, *_warnings(vibrating, settings, share, swept), *_not_followed(vibrating, swept)
+    share = largest_force(own.found), float(excitation.loaded.forces[-1])
+    said = *_warnings(vibrating, settings, share, swept), *_not_followed(vibrating, swept)
     said = *said, *_branch_warnings(swept), *_not_repeating(vibrating, swept), *errors.said
     said = *said, *_iso_warnings(first, iso), *over_torque.warnings
-    folder = RunFolder(out)
-    folder.remove(OF_DYNAMICS)
-    failures = write_excitation(folder, excitation, companion, loads, excited)
-    RESPONSE.write(folder, response_rows(vibrating, swept, found, iso, errors))
-    BRANCH.write(folder, branch_rows(vibrating, swept))
-    DYNAMICS.write(folder, summary(vibrating, settings, swept, *share, iso, errors, said))
-    SPECTRUM.write(folder, spectrum_rows(vibrating, swept, found))
-    HISTORIES.write(folder, history_rows(moving))
-    TORQUE_MAP.write(folder, over_torque.rows)
-    pictures = VIBRATION_PICTURES if wanted_output(loads.scene).pictures else ()
-    return [*said, *failures, *draw(from_tables(pictures, out), folder).failures]
+    return SweptVibration(own, settings, swept, iso, errors, moving, over_torque, share, said)
 
 
 def _over_torque(

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from mpi4py import MPI
-
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import Mesher, Preparer, prepare_model
 from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.solution.certificates import certify
-from evolvent.gears.solution.certified_pitch import certified_pitch
+from evolvent.gears.sweep.pitch_sweep import SweptPosition
+from evolvent.results.archive.archive import COARSE
+from evolvent.results.archive.run_cost import Timings
 from evolvent.results.tables.run_warnings import tip_edge_contact
-from evolvent.run.coarse_run import as_run
-from evolvent.run.pitch_run import pitch_of
-from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
+from evolvent.run.call import Call
+from evolvent.run.kept_pitch import Meshes, kept_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
@@ -35,48 +33,64 @@ class PitchRoots:
     """Pinion rotations beyond those of uniform spacing [rad]."""
     roots: Roots
     """Root stresses of both gears at each friction coefficient."""
-    deflected: bool
-    """Whether contact was searched again on deflected flanks."""
+    scene: Scene
+    """Scene as it was solved, on deflected flanks where its pitch needs them."""
+    timings: Timings
+    """Wall time of the uniform positions [s]."""
     tip_edges: str
     """Beginning of a sentence on contact on tip edges, see `tip_edge_contact`; empty where none bears."""
 
 
-def scene_root_meshes(scene: Scene) -> tuple[RootMesh, RootMesh]:
-    """The root mesh of the results, and the coarse one of the error bars."""
-    times = (scene.strength or StrengthSection()).root_refinement
-    return RootMesh(times), RootMesh(times, coarse=True)
+def root_meshes(scene: Scene) -> tuple[Meshes, Meshes]:
+    """Meshes with finer roots: those of the results, and the coarse ones of the error bars."""
+    times = root_refinement(scene)
+    return (
+        Meshes(RootMesh(times), problem=one_sector),
+        Meshes(RootMesh(times, coarse=True), COARSE, one_sector),
+    )
 
 
-def pitch_roots(
-    scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
-    angles: Sequence[float] | None = None, prepare: Preparer = prepare_model,
-) -> PitchRoots:
-    """Root stresses of both gears over a pitch at each friction coefficient. Collective.
+def root_refinement(scene: Scene) -> int:
+    """How many times finer the roots are than those of a run."""
+    return (scene.strength or StrengthSection()).root_refinement
 
-    mesh: of `root_meshes`. stage: of the progress, for the positions. angles: beyond the uniform ones; None: see
-    `PitchRoots`. prepare: prepares gears that other calls share.
 
-    Raises MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError.
-    """
-    progress.stage(MESHING)
+def one_sector(scene: Scene) -> GearProblem:
+    """The gear problem of a scene on one sector of each gear, which has the roots."""
     problem = gear_problem(scene)
-    one_sector = replace(problem, options=replace(problem.options, whole_gears=False))  # it has the roots
-    gears = prepare(one_sector, comm, mesh, lambda: progress.stage(CONDENSING)).model
-    pitch, frictions = pitch_of(scene), scene.contact.friction
-    progress.stage(stage, len(pitch.angles))
-    solved = certified_pitch(gears, pitch, frictions, comm, progress.position)
-    uniform, model = solved.positions, replace(gears, deflected=solved.deflected)
+    return replace(problem, options=replace(problem.options, whole_gears=False))
+
+
+def pitch_roots(call: Call, scene: Scene, meshes: Meshes, angles: Sequence[float] | None = None) -> PitchRoots:
+    """Root stresses of both gears over a pitch at each friction coefficient; solved positions are stored. Collective.
+
+    meshes: of `root_meshes`.
+    angles: pinion rotations [rad] beyond the uniform ones; None: see `PitchRoots`.
+
+    Raises MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, ArchiveError, WriteError.
+    """
+    pitch = kept_pitch(call, scene, meshes)
+    problem, frictions, comm = meshes.problem(pitch.scene), scene.contact.friction, call.comm
+    gears = pitch.gears or call.gears(problem, meshes.mesh, shown=not meshes.part)
+    uniform, model = pitch.solved.positions, replace(gears.model, deflected=pitch.solved.deflected)
+
+    def stored(angle: float, solve: Callable[[], SweptPosition]) -> SweptPosition:
+        known = pitch.archive.read_between(angle, problem.pair) if call.resume else None
+        if known is None:
+            known = solve()
+            certify(known.results)
+            pitch.archive.write_between(known)
+        return known
+
     every = SweptRoots(uniform, on_first(comm, lambda: roots_of(model, uniform)))
-    every = with_angles(model, every, _outer_points(problem) if angles is None else angles, frictions, comm)
+    wanted = _outer_points(problem) if angles is None else angles
+    every = with_angles(model, every, wanted, frictions, comm, stored)
     if angles is None:  # after the outer points, which narrow the intervals, too
-        every = with_peaks(model, every, frictions, comm)
+        every = with_peaks(model, every, frictions, comm, stored)
     known = {each.angle for each in uniform}
-    further = sorted((each for each in every.positions if each.angle not in known), key=lambda each: each.angle)
-    for position in further:
-        certify(position.results)
-    run = as_run(scene, gears, solved, comm)
-    edges = on_first(comm, lambda: "" if run is None else tip_edge_contact(run))
-    return PitchRoots(tuple(each.angle for each in further), every.roots, solved.deflected, edges)
+    further = sorted(each.angle for each in every.positions if each.angle not in known)
+    edges = call.on_first(lambda: tip_edge_contact(pitch.run_data()))
+    return PitchRoots(tuple(further), every.roots, pitch.scene, pitch.timings, edges)
 
 
 def _outer_points(problem: GearProblem) -> list[float]:

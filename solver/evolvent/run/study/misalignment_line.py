@@ -17,7 +17,7 @@ from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
-from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPositions, kept_positions
+from evolvent.run.dynamics.kept_positions import KEPT, NAMES, KeptPositions, kept_positions
 from evolvent.run.study.plan.shared_gears import meshes, own_torque
 from evolvent.run.study.results.scene_record import SceneRecord, read_record
 from evolvent.run.study.scene_task import SceneTask, solve
@@ -45,18 +45,18 @@ def solve_line(tasks: Sequence[SceneTask], gears: SharedGears) -> list[SceneReco
 
 def _keep_positions(tasks: Sequence[SceneTask], gears: SharedGears) -> None:
     """Archives solved positions in the scenes' folders, from which each excitation resumes. tasks: at ascending
-    misalignments. Raises what `run_excitation` does."""
+    misalignments. Raises what `compute` does."""
     first, loads = tasks[0].scene, [own_torque(task.scene) for task in tasks]
     check_positions(first)
     dolfinx_compat.silence_logs()
     with ExitStack() as locks:
         for task in tasks:
             locks.enter_context(locked(task.folder))
-            RunFolder(task.folder).require_free([KEPT, KEPT_COARSE])
-        kept = [kept_positions(each, task.folder, resume=True) for each, task in zip(loads, tasks)]
-        for number, mesh in enumerate(meshes(first, "excitation")):
+            RunFolder(task.folder).require_free(KEPT)
+        for part, mesh in zip(NAMES, meshes(first, "excitation")):
             models = [gears.prepare(each.problem, MPI.COMM_SELF, mesh).model for each in loads]
-            _solve_missing(models, [both[number] for both in kept], first.sweep.positions)
+            kept = [kept_positions(each, RunFolder(task.folder), part) for each, task in zip(loads, tasks)]
+            _solve_missing(models, kept, first.sweep.positions)
 
 
 def _solve_missing(models: Sequence[GearModel], kept: Sequence[KeptPositions], positions: int) -> None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 
@@ -16,17 +17,16 @@ from evolvent.gears.shared_gears import SharedGears
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.archive.store import ArchiveError
-from evolvent.run.dynamics.excitation import run_excitation
-from evolvent.run.dynamics.kept_positions import KEPT
-from evolvent.run.dynamics.vibration import run_dynamics
-from evolvent.run.scene_run import run_scene
-from evolvent.run.strength.strength_run import run_strength
+from evolvent.run.call import Options
+from evolvent.run.computation import Computation
+from evolvent.run.compute import compute
+from evolvent.run.folder_checks import begun_results
+from evolvent.run.kinds.all import kind_named
+from evolvent.run.kinds.excitation import Excitation
 from evolvent.run.study.plan.shared_gears import condensed_problem, meshes, own_torque
-from evolvent.run.study.plan.study_file import Computation
 from evolvent.run.study.results.check_figures import run_check
 from evolvent.run.study.results.scene_record import SceneRecord, Status, read_record, write_record
 from evolvent.scene.scene import Scene
-from evolvent.strength.results.tables import STRENGTH
 from evolvent_meshes.errors import EvolventError, InputError, ResultError
 
 DONE: Status = "done"
@@ -44,7 +44,7 @@ class SceneTask:
     """Hash of the scene's content."""
     folder: Path
     """Folder for the results of the scene."""
-    compute: Computation
+    compute: str
     """Computation, as the study file names it."""
     scene: Scene
     """Validated scene."""
@@ -72,7 +72,7 @@ def solve(task: SceneTask, gears: SharedGears | None = None) -> SceneRecord:
         if (known := read_record(task.folder)) is not None:
             return known
         _require_room(task)
-        warnings = COMPUTING[task.compute](task, prepare_model if gears is None else gears.prepare)
+        warnings = _computed(task, prepare_model if gears is None else gears.prepare)
     except EvolventError as error:
         reason = str(error)
         lasting = isinstance(error, (InputError, ResultError)) and not isinstance(error, (FolderError, ArchiveError))
@@ -104,39 +104,17 @@ def _require_room(task: SceneTask) -> None:
         require_memory(task.scene, lambda scene, ranks: task.share_of_memory * needed(scene, ranks), MPI.COMM_SELF)
 
 
-def _run(task: SceneTask, prepare: Preparer) -> list[str]:
-    resume = (task.folder / "results/state.npz").exists()
-    scene = task.scene.model_copy(update={"wear": None})
-    run_scene(scene, task.folder, resume, quiet=True, overwrite=not resume, prepare=prepare)
-    return []
+def computation_of(task: SceneTask) -> Computation[Any]:
+    """The computation of a scene; an excitation is that of the scene's own torque."""
+    if task.compute == "excitation":
+        return Excitation.under(own_torque(task.scene))
+    return kind_named(task.compute).load().of(task.scene)
 
 
-def _wear(task: SceneTask, prepare: Preparer) -> list[str]:
-    resume = (task.folder / "results/wear.npz").exists()
-    run_scene(task.scene, task.folder, resume, quiet=True, overwrite=not resume)
-    return []
-
-
-def _excitation(task: SceneTask, prepare: Preparer) -> list[str]:
-    resume = (task.folder / KEPT).exists()
-    return run_excitation(own_torque(task.scene), task.folder, resume, not resume, quiet=True, prepare=prepare)
-
-
-def _dynamics(task: SceneTask, prepare: Preparer) -> list[str]:
-    resume = (task.folder / KEPT).exists()
-    return run_dynamics(task.scene, task.folder, resume, not resume, quiet=True, prepare=prepare)
-
-
-def _strength(task: SceneTask, prepare: Preparer) -> list[str]:
-    return run_strength(task.scene, task.folder, (task.folder / STRENGTH.name).exists(), quiet=True, prepare=prepare)
-
-
-def _check(task: SceneTask, prepare: Preparer) -> list[str]:
-    return run_check(task.scene, task.folder)
-
-
-COMPUTING: Mapping[Computation, Callable[[SceneTask, Preparer], list[str]]] = {
-    "check": _check, "run": _run, "excitation": _excitation, "dynamics": _dynamics, "strength": _strength,
-    "wear": _wear,
-}
-"""Computation -> function that computes a scene in its folder and returns warnings, a sentence each."""
+def _computed(task: SceneTask, prepare: Preparer) -> list[str]:
+    """Computes a scene in its folder, or goes on there. Returns warnings, a sentence each."""
+    if task.compute == "check":
+        return run_check(task.scene, task.folder)
+    what = computation_of(task)
+    resume = bool(begun_results(what, task.folder))
+    return compute(what, task.folder, Options(resume, not resume, quiet=True, prepare=prepare, silent=True))

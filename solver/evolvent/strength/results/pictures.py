@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.results.tables.table import SceneValue
+from evolvent.results.tables.table import SCENE_TITLE
 from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS
 from evolvent.strength.results.fatigue_rows import FATIGUE_DEPTH, FATIGUE_MAP, FATIGUE_SECTION
 from evolvent.strength.results.tables import ROOT_STRESS, STRENGTH
 
-STRENGTH_SCENE, FATIGUE_SCENE = SceneValue("strength.toml", "title"), SceneValue("fatigue.toml", "title")
-"""Beside a run's scene.toml, which may have other values: the scenes that were computed, with all their defaults."""
 ROOT_STRESS_PICTURE = TablePicture(
-    "root_stress.png", (STRENGTH_SCENE, ROOT_STRESS, STRENGTH),
+    "root_stress.png", (SCENE_TITLE, ROOT_STRESS, STRENGTH),
     "evolvent.strength.results.root_stress_picture:root_stress_picture",
 )
 FATIGUE_PICTURE = TablePicture(
-    "fatigue.png", (FATIGUE_SCENE, FATIGUE_FACTS, FATIGUE_MAP, FATIGUE_SECTION, FATIGUE_DEPTH),
+    "fatigue.png", (SCENE_TITLE, FATIGUE_FACTS, FATIGUE_MAP, FATIGUE_SECTION, FATIGUE_DEPTH),
     "evolvent.strength.results.fatigue_picture:fatigue_picture",
 )

@@ -12,7 +12,6 @@ from scipy.integrate import trapezoid
 from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.results.archive.archive import Archive
-from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import friction_rows
@@ -190,13 +189,12 @@ def _mean(chart: FlankChart) -> Floats:
     return np.asarray(trapezoid(chart.depth, chart.heights, axis=1) / np.ptp(chart.heights))
 
 
-def write_report(study: WornRun, folder: RunFolder) -> None:
-    """Writes OUT/wear.json, the figures at each report. Raises OSError."""
+def wear_report(study: WornRun) -> WearReport:
+    """The figures at each report, for wear.json."""
     wear = study.scene.wear
     assert wear is not None
-    report = WearReport(
+    return WearReport(
         {"pinion": wear.pinion_mm2_per_N, "wheel": wear.wheel_mm2_per_N},
         blocks=len(study.rows), refused_blocks=sum(row.refused for row in study.rows),
         largest_block_error=max(row.error for row in study.rows), reports=tuple(pair.report() for pair in study.pairs),
     )
-    WEAR.write(folder, report)

@@ -28,7 +28,7 @@ from evolvent import (
 from evolvent.contact.transient import saved_state
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import rectangle
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
 
 END, SLID = 4e-6, 1e-9  # s, mm
 EQUAL = TransientSettings(2e-7, modes=3)
@@ -111,7 +111,7 @@ def test_a_run_goes_on_bit_for_bit(settings: TransientSettings, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("size", on_ranks(1, 2))
-def test_another_program_goes_on(size: int, saved: Path, tmp_path: Path, run_script: Run) -> None:
+def test_another_program_goes_on(size: int, saved: Path, tmp_path: Path, run_script: RunScript) -> None:
     """On one rank, and on two that do the same: the next moment is that of this program, to 1e-8 of the largest
     figure of each unit. Another process condenses the bodies again, and its sums round differently (docs/checks.md)."""
     wanted = figures(Transient.resume(saved, shaken(), EQUAL).solve(loads))

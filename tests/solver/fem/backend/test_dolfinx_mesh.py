@@ -20,7 +20,7 @@ from evolvent.fem.body import assemble
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, MeshData
 from evolvent_meshes.shapes.blocks import box, rectangle
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
 
 SIZE = (2.0, 3.0, 5.0)
 TOP = 7
@@ -226,7 +226,7 @@ if MPI.COMM_WORLD.rank == 0:
 
 
 @pytest.mark.mpi
-def test_a_distributed_mesh_is_refused(run_script: Run) -> None:
+def test_a_distributed_mesh_is_refused(run_script: RunScript) -> None:
     """On both of two ranks, with the remedy; a mesh of each rank's own on MPI.COMM_SELF is taken."""
     done = run_script("-c", ON_TWO_RANKS, ranks=2)
     assert done.returncode == 0, done.stderr

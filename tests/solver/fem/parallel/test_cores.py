@@ -9,7 +9,7 @@ from mpi4py import MPI
 from threadpoolctl import threadpool_info
 
 from evolvent.fem.parallel.cores import Cores
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
 
 LEND = """
 import os, sys, time
@@ -52,7 +52,7 @@ sys.stdout.write("fine\\n")
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", [2, 3])
-def test_waiting_ranks_lend_their_cores(ranks: int, run_script: Run) -> None:
+def test_waiting_ranks_lend_their_cores(ranks: int, run_script: RunScript) -> None:
     """Each rank in turn works while the others wait: it has as many BLAS threads as there are ranks, and may run on
     every processor; afterwards it has one thread and its own processors again."""
     done = run_script("-c", LEND, ranks=ranks)

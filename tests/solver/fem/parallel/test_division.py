@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from evolvent.fem.parallel.division import divided
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
 
 EXCHANGE = """
 from mpi4py import MPI
@@ -27,7 +27,7 @@ def test_each_task_goes_to_the_rank_with_least_to_do() -> None:
 
 
 @pytest.mark.parametrize("size", on_ranks(1, 2, 3))
-def test_all_ranks_get_what_each_has(size: int, run_script: Run) -> None:
+def test_all_ranks_get_what_each_has(size: int, run_script: RunScript) -> None:
     """In the order of the ranks."""
     done = run_script("-c", EXCHANGE, ranks=size)
     assert done.returncode == 0, done.stderr

@@ -14,7 +14,7 @@ import scipy.sparse as sp
 
 from evolvent.fem.parallel.memory import Stack, array_bytes, lazy_zeros
 from evolvent_meshes.arrays import Floats
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
 
 KEPT = """
 import numpy as np
@@ -75,7 +75,7 @@ def test_array_larger_than_the_machine_is_refused() -> None:
 
 
 @pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "mallopt"), reason="what the C library does, here glibc's")
-def test_freed_arrays_stay_until_returned(run_script: Run) -> None:
+def test_freed_arrays_stay_until_returned(run_script: RunScript) -> None:
     """In a new process, once a stiffness is assembled, 64 MB that were written to and freed are still resident; given
     back they are not."""
     done = run_script("-c", KEPT)

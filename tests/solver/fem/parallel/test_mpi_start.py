@@ -6,7 +6,7 @@ import pytest
 
 from evolvent.fem.parallel.mpi_start import LAUNCHERS, launched
 from tests.support.running.fresh_process import NOWHERE, python
-from tests.support.running.processes import Run
+from tests.support.running.processes import RunScript
 
 PORTS = """
 import os
@@ -29,7 +29,7 @@ def test_settings_of_a_process_alone(btl: str, ports: bool) -> None:
 
 
 @pytest.mark.mpi
-def test_ranks_have_the_settings_of_mpirun(run_script: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ranks_have_the_settings_of_mpirun(run_script: RunScript, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two ranks reach each other: those of a process alone, which reaches nobody, are not theirs."""
     monkeypatch.delenv("OMPI_MCA_btl", raising=False)
     program = "import evolvent; from mpi4py import MPI; print(MPI.COMM_WORLD.gather(evolvent.__name__) or '', end='')"

@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.fem.parallel import ranks
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
 
 SHARE = """
 import numpy as np
@@ -60,7 +60,7 @@ except (ValueError, RuntimeError) as error:
 
 
 @pytest.mark.parametrize("size", on_ranks(1, 2, 3, 4))
-def test_shared_arrays_are_identical_on_all_ranks(size: int, run_script: Run) -> None:
+def test_shared_arrays_are_identical_on_all_ranks(size: int, run_script: RunScript) -> None:
     """Every kind of array arrives bit by bit from every root, on one node and on nodes of two ranks, in pieces; it is
     read-only, in shared memory, and the memory is given back with the last array."""
     done = run_script("-c", SHARE, ranks=size)
@@ -70,7 +70,7 @@ def test_shared_arrays_are_identical_on_all_ranks(size: int, run_script: Run) ->
 
 @pytest.mark.mpi
 @pytest.mark.parametrize(("kind", "found"), [("plain", "ValueError one"), ("stubborn", "RuntimeError Stubborn: one")])
-def test_failure_of_a_rank_is_raised_on_all(kind: str, found: str, run_script: Run) -> None:
+def test_failure_of_a_rank_is_raised_on_all(kind: str, found: str, run_script: RunScript) -> None:
     """One rank's exception is raised on all, with a note of where; also one that cannot be pickled."""
     done = run_script("-c", FAIL_ALIKE, kind, ranks=3)
     assert sorted(done.stdout.splitlines()) == [f"rank {rank}: {found}; on rank 1 of 3:" for rank in range(3)]

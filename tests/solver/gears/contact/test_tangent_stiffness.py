@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evidence.solved_run import solved_run
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.sweep.position_search import SearchedAt, searched_at, shared_position
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from tests.support.gear_cases import helical_scene, model_of, spur_scene, with_load
 
 STEP = 1e-4

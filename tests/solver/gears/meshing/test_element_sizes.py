@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from mpi4py import MPI
 
+from evidence.solved_run import solved_run
 from evolvent.check.scene_warnings import scene_warnings
 from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import scene_from_text
 

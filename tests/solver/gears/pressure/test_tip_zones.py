@@ -9,6 +9,7 @@ import pytest
 from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.spacing import PLASTIC
+from evidence.solved_run import solved_run
 from evolvent.contact.hertz import line_peak_pressure
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.pressure.line_peaks import zone_end_peaks
@@ -16,8 +17,7 @@ from evolvent.results.engagement import engagement, largest_peak
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import warnings_of
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.scene import load_scene
 from tests.support.gear_cases import QUIET
 from tests.support.run_parts import GOOD

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evidence.solved_run import solved_run
 from evolvent.gears import (
     CoarseContactWarning,
     ExtendedChartWarning,
@@ -32,8 +33,7 @@ from evolvent.gears.solution.certificates import PitchImbalance, certify_pitch
 from evolvent.results.archive.archive import Archive
 from evolvent.results.mesh_facts import cells_across
 from evolvent.results.tables.figure_rows import friction_rows, position_rows
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.wear import Archard, wear_study, wearing_pair
@@ -41,7 +41,7 @@ from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET, helical_scene, spur_scene
 from tests.support.gears_api_curve import he_problem
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
 
 POSITIONS, FRICTIONS = 4, (0.0, 0.1)
 
@@ -53,7 +53,7 @@ def gears() -> GearModel:
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_curve_of_the_api_equals_that_of_a_run(run_script: Run, tmp_path: Path, ranks: int) -> None:
+def test_curve_of_the_api_equals_that_of_a_run(run_script: RunScript, tmp_path: Path, ranks: int) -> None:
     """Problem: He's pair at level quick, four positions, without friction and at μ = 0.1, once by `evolvent run` and
     once by the API, on as many ranks. Exact: the same transmission errors, to 1e-9, to which Newton's method
     repeats in two processes (docs/checks.md); and no module of scenes is imported."""

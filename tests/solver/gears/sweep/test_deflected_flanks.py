@@ -28,7 +28,7 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.gears.sweep.position_search import shared_position
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import model_of, spur_scene
-from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
+from tests.support.running.processes import BROKEN_RUN, RunScript, on_ranks
 
 BENT = 344
 """A seed of a helical steel pair under a tenth of a module of deflection, small enough for a second a pitch."""
@@ -160,7 +160,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def solved(run_script: Run, scene: Path, out: Path, *how: str, ranks: int = 1, resume: bool = False) -> dict[str, Any]:
+def solved(run_script: RunScript, scene: Path, out: Path, *how: str, ranks: int = 1, resume: bool = False) -> dict[str, Any]:
     """The summary of a run; the first of `how` is what to break."""
     settings = "sweep.positions=4", "contact.friction=[0.0, 0.1]"
     more = [*(f"--set={setting}" for setting in settings), *how[1:], *(["--resume"] if resume else [])]
@@ -172,14 +172,14 @@ def solved(run_script: Run, scene: Path, out: Path, *how: str, ranks: int = 1, r
 
 
 @pytest.fixture(scope="module")
-def asked(scene: Path, run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+def asked(scene: Path, run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Solved on deflected flanks because it is asked for."""
     return solved(run_script, scene, tmp_path_factory.mktemp("asked"), "ok", "--exact=deflected-flanks")
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_a_pitch_out_of_balance_is_solved_again_on_deflected_flanks(
-    ranks: int, scene: Path, asked: dict[str, Any], run_script: Run, tmp_path: Path
+    ranks: int, scene: Path, asked: dict[str, Any], run_script: RunScript, tmp_path: Path
 ) -> None:
     """A run that loses more than is allowed becomes the one that asks for deflected flanks, on any number of ranks; the
     summary and the log say so."""
@@ -195,7 +195,7 @@ def test_a_pitch_out_of_balance_is_solved_again_on_deflected_flanks(
 
 @pytest.mark.parametrize(("number", "complete"), [(9, 3), (17, 7), (22, 1)])
 def test_a_run_killed_on_deflected_flanks_is_resumed(
-    number: int, complete: int, scene: Path, asked: dict[str, Any], run_script: Run, tmp_path: Path
+    number: int, complete: int, scene: Path, asked: dict[str, Any], run_script: RunScript, tmp_path: Path
 ) -> None:
     """kill -9 while the last position of the pitch before deflection, the one that closes it, or the second after
     deflection, is written: resumed it is the same."""

@@ -17,7 +17,7 @@ from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arra
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.files import write_bytes
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
-from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
+from tests.support.running.processes import BROKEN_RUN, RunScript, on_ranks
 
 SCENE = "demos/he2022.toml"
 SETTINGS = (
@@ -66,7 +66,7 @@ def table(out: Path) -> dict[str, float]:
 
 
 @pytest.fixture(scope="module")
-def whole(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a run that nothing happened to."""
     out = tmp_path_factory.mktemp("whole") / "out"
     done = run_script(BROKEN_RUN, "ok", *arguments(out))
@@ -94,7 +94,7 @@ def test_finished_run_has_all_its_files(whole: Path) -> None:
     ],
 )
 def test_killed_run_resumes_to_the_same_results(
-    how: str, ranks: int, whole: Path, run_script: Run, tmp_path: Path
+    how: str, ranks: int, whole: Path, run_script: RunScript, tmp_path: Path
 ) -> None:
     """kill -9 while meshing, between a position and its state, amid writing, at the position that closes the pitch:
     resumed it is the undisturbed run. One is resumed on two ranks."""
@@ -122,7 +122,7 @@ def test_archived_friction_history_continues_the_sweep(tmp_path: Path) -> None:
     assert bare.results[0].friction_loss != pytest.approx(wanted, rel=1e-5)
 
 
-def test_resuming_a_complete_run_solves_nothing(whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_resuming_a_complete_run_solves_nothing(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
     """--resume of a complete run condenses nothing, searches nothing, and writes the tables again; another title or
     other output is no other scene."""
     out = tmp_path / "out"
@@ -140,7 +140,7 @@ def snapshot(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_resuming_another_scene_changes_nothing(ranks: int, whole: Path, run_script: Run) -> None:
+def test_resuming_another_scene_changes_nothing(ranks: int, whole: Path, run_script: RunScript) -> None:
     """Status 2, a message that says what to do, and every file in the folder as before."""
     before = snapshot(whole)
     more = ("--resume", "--set", "load.torque_Nm=171")
@@ -151,7 +151,7 @@ def test_resuming_another_scene_changes_nothing(ranks: int, whole: Path, run_scr
     assert snapshot(whole) == before
 
 
-def test_overwriting_run_removes_files_of_the_earlier_run_only(whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_overwriting_run_removes_files_of_the_earlier_run_only(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
     """Another scene into a used folder with --overwrite, killed after its second position: only its own results are
     there, files that are not Evolvent's stay, and --resume goes on with it."""
     out = tmp_path / "out"
@@ -171,7 +171,7 @@ def test_overwriting_run_removes_files_of_the_earlier_run_only(whole: Path, run_
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_full_disk_leaves_a_run_that_resumes(ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_full_disk_leaves_a_run_that_resumes(ranks: int, whole: Path, run_script: RunScript, tmp_path: Path) -> None:
     """No space for the fourth file: status 1 and the reason, no half-written file, the positions before it intact, and
     once there is room --resume completes the run."""
     out = tmp_path / "out"
@@ -187,7 +187,7 @@ def test_full_disk_leaves_a_run_that_resumes(ranks: int, whole: Path, run_script
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small file system wants root")
-def test_full_file_system_ends_with_status_1(run_script: Run, tmp_path: Path) -> None:
+def test_full_file_system_ends_with_status_1(run_script: RunScript, tmp_path: Path) -> None:
     """On a file system of 64 kB: status 1 and the reason."""
     small = tmp_path / "small"
     small.mkdir()
@@ -204,7 +204,7 @@ def test_full_file_system_ends_with_status_1(run_script: Run, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_impossible_output_folder_ends_with_status_2(ranks: int, run_script: Run, tmp_path: Path) -> None:
+def test_impossible_output_folder_ends_with_status_2(ranks: int, run_script: RunScript, tmp_path: Path) -> None:
     """A file where a folder is wanted: status 2 and the reason, on any number of ranks."""
     (tmp_path / "file").write_text("", encoding="utf-8")
     done = run_script(BROKEN_RUN, "ok", *arguments(tmp_path / "file" / "out"), ranks=ranks)

@@ -12,6 +12,7 @@ import pytest
 from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
+from evidence.solved_run import solved_run
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import Mesher
 from evolvent.gears.meshing.companion_meshes import coarser, companion_mesh
@@ -32,9 +33,8 @@ from evolvent.results.error_bars.compared import Compared, Curve
 from evolvent.results.error_bars.estimation import Companion, errors_between, estimated_errors
 from evolvent.results.run_data import RunData, SolvedPosition, read_run
 from evolvent.run import coarse_run
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
-from evolvent.run.scene_run import run_scene
+from evolvent.run.kept_pitch import pitch_of
+from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
@@ -42,7 +42,8 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.splitting import halved
 from evolvent_meshes.sector.section import SectorResolution
 from tests.support.gear_cases import spur_scene
-from tests.support.running.processes import BROKEN_RUN, Run
+from tests.support.running.processes import BROKEN_RUN, RunScript
+from tests.support.running.quiet import quietly
 from tests.support.synthetic_run import synthetic_run
 
 SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4",
@@ -218,7 +219,7 @@ def test_error_bars_are_read_as_archived(tmp_path: Path) -> None:
 def test_run_reports_and_archives_its_error_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run gives every figure its bar and names the method; going on with a finished run solves nothing again."""
     scene = spur_scene(*SHORT)
-    run_scene(scene, tmp_path, quiet=True)
+    quietly(Run.of(scene), tmp_path)
     found = summary(tmp_path)
     assert (
         found["estimated_error"]["missing"] is None and "twice the element size" in found["estimated_error"]["method"]
@@ -230,7 +231,7 @@ def test_run_reports_and_archives_its_error_bars(tmp_path: Path, monkeypatch: py
         assert all(0.0 < bars[name] < row[name] for name in names)
         assert (row["face_load_factor"], bars["face_load_factor"]) == (1.0, 0.0)
     monkeypatch.setattr(coarse_run, "prepare_model", fails)
-    run_scene(scene, tmp_path, resume=True, quiet=True)
+    quietly(Run.of(scene), tmp_path, resume=True)
     assert summary(tmp_path)["frictions"] == found["frictions"]
 
 
@@ -239,11 +240,11 @@ def test_run_without_companion_gives_the_reason(tmp_path: Path, monkeypatch: pyt
     is where none are asked for."""
     scene = spur_scene(*SHORT)
     monkeypatch.setattr(coarse_run, "prepare_model", fails)
-    run_scene(scene, tmp_path, quiet=True)
+    quietly(Run.of(scene), tmp_path)
     assert "it rained" in summary(tmp_path)["estimated_error"]["missing"]
     assert [row["estimated_error"] for row in summary(tmp_path)["frictions"]] == [None, None]
     without = spur_scene(*SHORT, "output.error_bars=false")
-    run_scene(without, tmp_path, resume=True, quiet=True)
+    quietly(Run.of(without), tmp_path, resume=True)
     assert summary(tmp_path)["estimated_error"]["missing"] == "Error bars were not asked for."
 
 
@@ -251,16 +252,16 @@ def test_error_bars_follow_the_output_that_the_scene_asks_for(tmp_path: Path, mo
     """A run with bars resumed without: summary.json, whose scene asks for none, and the run as `plot` reads it have
     none. Resumed with them: the same bars, and no companion is solved for them."""
     with_bars, without = spur_scene(*SHORT, *OUTPUT), spur_scene(*SHORT, *OUTPUT, "output.error_bars=false")
-    run_scene(with_bars, tmp_path, quiet=True)
+    quietly(Run.of(with_bars), tmp_path)
     first = summary(tmp_path)
     assert all(row["estimated_error"] for row in first["frictions"])
-    run_scene(without, tmp_path, resume=True, quiet=True)
+    quietly(Run.of(without), tmp_path, resume=True)
     found = summary(tmp_path)
     assert found["scene"]["output"]["error_bars"] is False
     assert [row["estimated_error"] for row in found["frictions"]] == [None, None]
     assert read_run(tmp_path).errors == NOT_ESTIMATED
     monkeypatch.setattr(coarse_run, "prepare_model", fails)
-    run_scene(with_bars, tmp_path, resume=True, quiet=True)
+    quietly(Run.of(with_bars), tmp_path, resume=True)
     again, bars = summary(tmp_path), [row["estimated_error"] for row in first["frictions"]]
     assert [row["estimated_error"] for row in again["frictions"]] == bars
 
@@ -270,7 +271,7 @@ def fails(*_: object) -> None:
 
 
 @pytest.mark.mpi
-def test_error_bars_agree_between_numbers_of_ranks(run_script: Run, tmp_path: Path) -> None:
+def test_error_bars_agree_between_numbers_of_ranks(run_script: RunScript, tmp_path: Path) -> None:
     """He's pair, two friction coefficients on 1 and 2 ranks: the same bars within 1e-6 of them."""
     settings = [part for setting in (*SHORT, *OUTPUT) for part in ("--set", setting)]
     found = []

@@ -11,6 +11,7 @@ from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import hit_rate
 from evidence.benchmarks.accuracy.spacing import PLASTIC, SpacingProblem, measure_spacing
+from evidence.solved_run import solved_run
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.archive.error_bar_data import summed_errors
 from evolvent.results.drawing.style import styled
@@ -30,8 +31,7 @@ from evolvent.results.figures.stress import engagement_stress
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import SPACING_SAID, about_spacing, warnings_of
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
 from tests.support.run_parts import GOOD

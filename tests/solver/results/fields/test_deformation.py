@@ -16,9 +16,10 @@ from evolvent.gears.meshing import levelled_meshes
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.fields.deformation import Deformation
-from evolvent.run.scene_run import run_scene
+from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import Scene
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
+from tests.support.running.quiet import quietly
 
 Case = tuple[GearModel, list[SweptPosition], Deformation]
 
@@ -107,7 +108,7 @@ def test_deformed_series_opens_in_pyvista(tmp_path: Path) -> None:
     """A run of He's pair that asks for it: one time a position, displacement at the nodes, stress in the cells of both
     gears; the bore stays where it is. A run that does not ask has none."""
     scene = spur_scene("mesh.level=quick", "sweep.positions=3", "output.deformation=true", "contact.friction=0")
-    run_scene(scene, tmp_path / "out", quiet=True)
+    quietly(Run.of(scene), tmp_path / "out")
     reader = pyvista.get_reader(str(tmp_path / "out/fields/deformed.pvd"))
     assert len(reader.time_values) == 3
     grid = reader.read()[0]
@@ -116,5 +117,5 @@ def test_deformed_series_opens_in_pyvista(tmp_path: Path) -> None:
     assert set(np.unique(grid.cell_data["gear"])) == {0.0, 1.0}
     assert grid.cell_data["stress_MPa"].shape == (grid.n_cells, 9)
     assert 100.0 < grid.cell_data["von_mises_MPa"].max() < 2000.0
-    run_scene(spur_scene("mesh.level=quick", "sweep.positions=3", "contact.friction=0"), tmp_path / "bare", quiet=True)
+    quietly(Run.of(spur_scene("mesh.level=quick", "sweep.positions=3", "contact.friction=0")), tmp_path / "bare")
     assert not (tmp_path / "bare/fields").exists()

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
+from evidence.solved_run import solved_run
 from evolvent.commands.app import Exit, main
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
@@ -18,8 +19,7 @@ from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import warnings_of
 from evolvent.results.tables.tables import summary, write_tables
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.plain_text import brief
 from evolvent.scene.schema.dynamics import DynamicsSection
 from tests.support.gear_cases import spur_scene

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evolvent.run.dynamics.transient.transient_run import run_transient
-from evolvent.run.dynamics.vibration import run_dynamics
+from evolvent.run.kinds.dynamics import Dynamics
+from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
+from tests.support.running.quiet import quietly
 
 SPEEDS = (4000.0, 6000.0)
 
@@ -48,9 +49,9 @@ def test_vibration_is_that_of_the_gears_with_their_modes(tmp_path: Path) -> None
     peak-to-peak value within 3 % at 4000 and 6000 r/min, by default; rigid bodies miss it by more than 15 %, and say
     so."""
     for bodies, how in (("elastic", ()), ("rigid", ('dynamics.bodies="rigid"',))):
-        said = run_dynamics(scene(*how), tmp_path / bodies, quiet=True)
+        said = quietly(Dynamics.of(scene(*how)), tmp_path / bodies)
         assert any("all inertia is at the bores" in sentence for sentence in said) == (bodies == "rigid")
-    run_transient(scene(), tmp_path / "transient", quiet=True)
+    quietly(Transient.of(scene()), tmp_path / "transient")
     cases = json.loads((tmp_path / "transient/transient.json").read_text(encoding="utf-8"))
     wanted = [case["peak_to_peak_um"] for case in cases]
     known = json.loads((tmp_path / "elastic/dynamics.json").read_text(encoding="utf-8"))

@@ -9,21 +9,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
-from evolvent.gears.meshing.companion_meshes import companion_mesh
+from evidence.calls import temporary_call
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.store import ArchiveError
 from evolvent.run.dynamics import excitation
-from evolvent.run.dynamics.excitation import loaded_pitch, run_excitation
+from evolvent.run.dynamics.excitation import loaded_pitch
 from evolvent.run.dynamics.kept_positions import KeptPositions
 from evolvent.run.dynamics.scene_torques import scene_torques
-from evolvent.run.progress import Progress
+from evolvent.run.kept_pitch import COMPANION
+from evolvent.run.kinds.excitation import Excitation
 from evolvent.scene.scene import SceneError
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.gear_cases import model_of, spur_scene, swept
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
+from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 SETTINGS = "mesh.level=quick", "output.pictures=true", "sweep.positions=6"
@@ -43,7 +44,7 @@ def column(lines: list[dict[str, str]], name: str) -> Floats:
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Under 50 and 100 % of the torque."""
     folder = tmp_path_factory.mktemp("excitation")
-    assert run_excitation(scene_torques(spur_scene(*SETTINGS), PERCENTS), folder, quiet=True) == []
+    assert quietly(Excitation.under(scene_torques(spur_scene(*SETTINGS), PERCENTS)), folder) == []
     return folder
 
 
@@ -87,11 +88,11 @@ def test_error_bars_come_from_a_coarse_companion(out: Path, tmp_path: Path) -> N
     """Where they are asked for: of every position half the difference to the excitation on elements of twice the size,
     at least; the values stay, 1e-8; without the companion there are none."""
     loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS)
-    assert run_excitation(loads, tmp_path, quiet=True) == []
+    assert quietly(Excitation.under(loads), tmp_path) == []
     lines, plain = rows(tmp_path / "excitation.csv"), rows(out / "excitation.csv")
     angles = np.radians(column(lines[:6], "pinion_angle_deg"))
-    with Progress(hidden=True) as progress:
-        coarse = loaded_pitch(loads, angles, companion_mesh, MPI.COMM_SELF, progress)
+    with temporary_call() as call:
+        coarse = loaded_pitch(call, loads, angles, COMPANION)
     for name, factor, values in (("transmission_error_um", 1e3, coarse.errors),
                                  ("tangent_stiffness_N_per_um", 1e-3, coarse.stiffness)):
         found, bars = column(lines, name), column(lines, f"{name}_error")
@@ -110,7 +111,7 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
 
     monkeypatch.setattr(excitation, "companion_mesh", refuse)
     loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS[:1])
-    (said,) = run_excitation(loads, tmp_path, quiet=True)
+    (said,) = quietly(Excitation.under(loads), tmp_path)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
     assert json.loads((tmp_path / "excitation.json").read_text(encoding="utf-8"))["warnings"] == [said]
     assert np.isnan(column(rows(tmp_path / "excitation.csv"), "secant_stiffness_N_per_um_error")).all()
@@ -120,7 +121,7 @@ def test_results_are_not_replaced_unasked(out: Path) -> None:
     """A second call is refused before anything is computed, and says what to do."""
     loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
     with pytest.raises(FolderError, match="remedy: --resume goes on from its positions, --overwrite"):
-        run_excitation(loads, out, quiet=True)
+        quietly(Excitation.under(loads), out)
 
 
 class Killed(Exception):
@@ -141,24 +142,24 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(KeptPositions, "write", killed)
     with pytest.raises(Killed):
-        run_excitation(loads, tmp_path, quiet=True)
+        quietly(Excitation.under(loads), tmp_path)
     with pytest.raises(FolderError, match=r"found results/excitation\.npz of an earlier call"):
-        run_excitation(loads, tmp_path, quiet=True)
-    assert run_excitation(loads, tmp_path, resume=True, quiet=True) == []
+        quietly(Excitation.under(loads), tmp_path)
+    assert quietly(Excitation.under(loads), tmp_path, resume=True) == []
     assert counts == [1, 2, 3, 4, 5, 6]
     for name in ("transmission_error_um", "tangent_stiffness_N_per_um"):
         whole, resumed = (column(rows(folder / "excitation.csv"), name) for folder in (out, tmp_path))
         assert resumed == pytest.approx(whole, rel=1e-8)
     monkeypatch.setattr(excitation, "prepare_model", None)
-    assert run_excitation(loads, tmp_path, resume=True, quiet=True) == []
+    assert quietly(Excitation.under(loads), tmp_path, resume=True) == []
     with pytest.raises(ArchiveError, match="found those of other gears, meshes, torques or positions"):
-        run_excitation(scene_torques(spur_scene(*SETTINGS), PERCENTS[:1]), tmp_path, resume=True, quiet=True)
+        quietly(Excitation.under(scene_torques(spur_scene(*SETTINGS), PERCENTS[:1])), tmp_path, resume=True)
 
 
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
     """The call begins from the start, with a sentence."""
     loads = scene_torques(spur_scene(*SETTINGS, "sweep.positions=3"), PERCENTS[:1])
-    (said,) = run_excitation(loads, tmp_path, resume=True, quiet=True)
+    (said,) = quietly(Excitation.under(loads), tmp_path, resume=True)
     assert said.startswith("--resume found nothing to continue")
 
 
@@ -166,7 +167,7 @@ def test_two_positions_are_too_few(tmp_path: Path) -> None:
     """Refused before anything is computed: they hold no harmonic."""
     loads = scene_torques(spur_scene(*SETTINGS, "sweep.positions=2"), PERCENTS)
     with pytest.raises(SceneError, match=r"sweep\.positions: found 2; allowed: 3 or more"):
-        run_excitation(loads, tmp_path, quiet=True)
+        quietly(Excitation.under(loads), tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -175,13 +176,13 @@ def test_foreign_files_stay(tmp_path: Path) -> None:
     (tmp_path / "harmonics.csv").write_text("mine")
     loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
     with pytest.raises(FolderError, match=r"harmonics\.csv"):
-        run_excitation(loads, tmp_path, overwrite=True, quiet=True)
+        quietly(Excitation.under(loads), tmp_path, overwrite=True)
     assert (tmp_path / "harmonics.csv").read_text() == "mine"
 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide the positions: the same table to 1e-6, and one line at the end."""
     code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["excitation", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--percent", "50,100"]

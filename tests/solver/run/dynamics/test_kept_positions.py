@@ -11,7 +11,7 @@ import pytest
 
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Store, arrays_bytes
-from evolvent.run.dynamics.kept_positions import KEPT, KeptPositions, another
+from evolvent.run.dynamics.kept_positions import NAMES, KeptPositions, another
 
 
 def single_array() -> bytes:
@@ -28,7 +28,7 @@ def archive(**arrays: Any) -> bytes:
 
 def kept(out: Path) -> KeptPositions:
     """Positions of the right gears."""
-    return KeptPositions(Store(RunFolder(out), "gears", another), KEPT, True)
+    return KeptPositions(Store(RunFolder(out), "gears", another), NAMES[""])
 
 
 WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 4)))
@@ -36,7 +36,7 @@ WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 4)))
 
 def test_what_was_written_is_read(tmp_path: Path) -> None:
     """Two positions under one torque."""
-    RunFolder(tmp_path).write(KEPT, WHOLE)
+    RunFolder(tmp_path).write(NAMES[""], WHOLE)
     found = kept(tmp_path).read()
     assert list(found) == [0, 1] and np.array_equal(found[1], np.ones((1, 4)))
 
@@ -55,6 +55,6 @@ def test_what_was_written_is_read(tmp_path: Path) -> None:
 )
 def test_forged_positions_are_refused(tmp_path: Path, content: bytes) -> None:
     """Archives that are cut off, damaged, no archives, or hold other arrays: an error with the path, nothing else."""
-    RunFolder(tmp_path).write(KEPT, content)
+    RunFolder(tmp_path).write(NAMES[""], content)
     with pytest.raises(ArchiveError, match=r"excitation\.npz: wanted"):
         kept(tmp_path).read()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,14 +12,16 @@ from evolvent.check.check_report import overview
 from evolvent.commands.app import main
 from evolvent.dynamics.modes import static_shapes
 from evolvent.dynamics.of_scene import backlash_problem, operating_point
-from evolvent.run.dynamics import excitation
-from evolvent.run.dynamics.vibration import run_dynamics
-from evolvent.run.scene_run import run_scene
+from evolvent.gears import gear_model
+from evolvent.run.computation import Computation
+from evolvent.run.kinds.dynamics import Dynamics
+from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
+from tests.support.running.quiet import quietly
 
 
 def scene(*settings: str) -> Scene:
@@ -31,18 +33,18 @@ def test_too_little_backlash_is_said_before_contact_is_solved(monkeypatch: pytes
     left; `check` has the same figure, and with what is asked for the scene is taken."""
     (tmp_path / "proud.csv").write_text("diameter_mm,depth_um\n140,-10\n157,-10\n")
     proud = f'pinion.flank_csv="{tmp_path / "proud.csv"}"'
-    monkeypatch.setattr(excitation, "prepare_model", None)
+    monkeypatch.setattr(gear_model, "condensed_gears", None)
     with pytest.raises(SceneError, match=r"found 0 µm, 20(\.\d)? µm less than unloaded errors") as error:
-        run_dynamics(scene(proud, "dynamics.backlash_um=0"), tmp_path / "out", quiet=True)
+        quietly(Dynamics.of(scene(proud, "dynamics.backlash_um=0")), tmp_path / "out")
     assert not (tmp_path / "out").exists()
     assert f"{error.value}" in overview(scene(proud, "dynamics.backlash_um=0"))
     least = re.search(r"from (\S+) µm on", str(error.value))
     assert least and backlash_problem(scene(proud, f"dynamics.backlash_um={least[1]}")) is None
 
 
-@pytest.mark.parametrize("compute", [run_dynamics, run_scene])
+@pytest.mark.parametrize("computation", [Dynamics, Run])
 def test_less_inertia_than_the_body_is_said_before_contact_is_solved(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, compute: Callable[..., object]
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, computation: type[Computation[Any]]
 ) -> None:
     """Elastic bodies move with all of their mass, 7.4e-3 kg m² of He's pinion: a given inertia below that is refused by
     geometry alone, before anything is meshed, by `evolvent dynamics` and by `evolvent run` at a speed, with rigid
@@ -50,7 +52,7 @@ def test_less_inertia_than_the_body_is_said_before_contact_is_solved(
     light = "dynamics.pinion_inertia_kg_m2=5e-3", "dynamics.operating_rpm=2000"
     monkeypatch.setattr(static_shapes, "body_mesh", None)
     with pytest.raises(InputError, match=r"dynamics\.pinion_inertia_kg_m2: wanted at least .*0\.0073.*rigid") as error:
-        compute(scene(*light), tmp_path / "out", quiet=True)
+        quietly(computation.of(scene(*light)), tmp_path / "out")
     assert not (tmp_path / "out").exists()
     assert f"would refuse this scene: {error.value}" in overview(scene(*light))
     rigid = scene(*light, 'dynamics.bodies="rigid"')
@@ -82,14 +84,15 @@ def test_somebody_names_the_backlash(
     anything is computed, by `evolvent dynamics` and by `evolvent run` at a speed, with the keys that give one. Once, it
     was computed without any, and showed no free flight and no jump."""
     given = load_scene(ROOT / "demos/he2022.toml", [*QUIET, "dynamics.operating_rpm=2000", *settings])
-    monkeypatch.setattr(excitation, "prepare_model", None)
+    monkeypatch.setattr(gear_model, "condensed_gears", None)
     assert (backlash_problem(given) is None) == named
     if named:
         assert operating_point(given) is not None
         return
-    for compute in (run_dynamics, run_scene):
+    computations: tuple[type[Computation[Any]], ...] = Dynamics, Run
+    for computation in computations:
         with pytest.raises(SceneError, match=r"dynamics\.backlash_um: found nothing.*tooth_thickness.*centre_dist"):
-            compute(given, tmp_path / "out", quiet=True)
+            quietly(computation.of(given), tmp_path / "out")
         assert not (tmp_path / "out").exists()
 
 

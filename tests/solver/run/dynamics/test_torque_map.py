@@ -21,13 +21,14 @@ from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.run.dynamics import torque_map as module
 from evolvent.run.dynamics.speeds import sweep_at
 from evolvent.run.dynamics.torque_map import TorqueMap, torque_map
-from evolvent.run.dynamics.vibration import run_dynamics
+from evolvent.run.kinds.dynamics import Dynamics
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.arrays import Floats
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET, spur_scene
+from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 PHASES = np.arange(12) / 12
@@ -124,7 +125,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """He's pair at its torque and at two fifths of it."""
     folder, one = tmp_path_factory.mktemp("dynamics"), scene()
     assert one.dynamics is not None
-    run_dynamics(one, folder, quiet=True)
+    quietly(Dynamics.of(one), folder)
     return folder
 
 

@@ -18,14 +18,15 @@ from evolvent.dynamics.pair_model import geometric_backlash
 from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
 from evolvent.dynamics.results.spectrum import SPECTRUM
 from evolvent.run.dynamics.summary_lines import summary_lines
-from evolvent.run.dynamics.vibration import run_dynamics
+from evolvent.run.kinds.dynamics import Dynamics
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
+from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 SETTINGS = (
@@ -49,7 +50,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With the force surface."""
     folder, one = tmp_path_factory.mktemp("dynamics"), scene()
     assert one.dynamics is not None
-    bodies, said = run_dynamics(one, folder, quiet=True)
+    bodies, said = quietly(Dynamics.of(one), folder)
     assert bodies.startswith("gear bodies: their own vibration of") and "(mesh harmonic 3)" in bodies
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")
     return folder
@@ -137,7 +138,7 @@ def test_rigid_bodies_have_all_inertia_at_the_bores(tmp_path: Path) -> None:
     """`dynamics.bodies = "rigid"`, once the default: the natural speed is √(k/m_e) 60/(2π z), the transmission error s
     itself, and a sentence says what that leaves out."""
     given = 'dynamics.bodies="rigid"', 'dynamics.mesh="tangent"', "dynamics.speeds=2"
-    said = run_dynamics(scene(*given), tmp_path, quiet=True)
+    said = quietly(Dynamics.of(scene(*given)), tmp_path)
     assert said[0].startswith('dynamics.bodies = "rigid": all inertia is at the bores')
     known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
     natural = np.sqrt(1e6 * known["mean_stiffness_N_per_um"] / known["equivalent_mass_kg"]) * 60.0 / (2.0 * np.pi * 50)
@@ -210,7 +211,7 @@ def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
     the ground), to 1e-3 by the trapezoidal rule."""
     one = scene("dynamics.histories_rpm=[1700,3900]", "dynamics.speeds=20", 'dynamics.mesh="secant"')
     folder = tmp_path / "out"
-    run_dynamics(one, folder, quiet=True)
+    quietly(Dynamics.of(one), folder)
     response = {(line["speed_rpm"], line["way"]): line for line in rows(folder / "response.csv")}
     assert len(response) == 2 * 21
     lines = rows(folder / "histories.csv")
@@ -246,7 +247,7 @@ def test_settings_follow_from_the_gears() -> None:
 def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
     """That of the reference centre distance, none: the key and the static deflection are named."""
     one = scene("dynamics.backlash_um=0", 'dynamics.mesh="secant"', "dynamics.speeds=2")
-    (said,) = [each for each in run_dynamics(one, tmp_path, quiet=True) if "backlash" in each]
+    (said,) = [each for each in quietly(Dynamics.of(one), tmp_path) if "backlash" in each]
     known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
     deflection = known["static_force_N"] / known["mean_stiffness_N_per_um"]
     assert said.startswith(f"dynamics.backlash_um: found 0 µm, less than the static deflection of {deflection:.3g} µm")
@@ -257,14 +258,14 @@ def test_no_factor_of_the_standard_without_deviations(tmp_path: Path) -> None:
     words = [each for each in SETTINGS if "profile_deviation" not in each]
     few = 'dynamics.mesh="secant"', "dynamics.speeds=2"
     one = load_scene(ROOT / "demos/he2022_dynamics.toml", [*QUIET, *words, *few])
-    (said,) = [each for each in run_dynamics(one, tmp_path, quiet=True) if each.startswith("dynamic_factor_iso: ")]
+    (said,) = [each for each in quietly(Dynamics.of(one), tmp_path) if each.startswith("dynamic_factor_iso: ")]
     assert said.endswith("give dynamics.profile_deviation_um")
     assert {line["dynamic_factor_iso"] for line in rows(tmp_path / "response.csv")} == {"nan"}
 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide the positions of the excitation: the same response to 1e-4, and one line at the end."""
     code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["dynamics", "demos/he2022_dynamics.toml", "--out", str(tmp_path / "out")]

@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 from evolvent.results.archive.run_folder import FolderError
-from evolvent.run.scene_run import run_scene
-from evolvent.run.strength.fatigue_run import run_fatigue
+from evolvent.run.kinds.fatigue import Fatigue
+from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent.scene.schema.fatigue import NEEDED, FatigueSection
 from evolvent.strength.fatigue.criterion import SHALLOW
 from tests.support.checkout import ROOT
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
+from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 SETTINGS = (
@@ -38,7 +39,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With error bars; a contact that is less than two elements wide is said."""
     folder = tmp_path_factory.mktemp("fatigue")
-    few, apart = run_fatigue(scene(), folder, quiet=True)
+    few, apart = quietly(Fatigue.of(scene()), folder)
     assert "elements across the contact (median): below 2" in few and "sweep.positions" in apart
     return folder
 
@@ -59,7 +60,7 @@ def largest(out: Path, gear: str, criterion: str, place: str, friction: float) -
 
 def test_folder(out: Path) -> None:
     """The scene with its defaults, tables and a picture."""
-    assert load_scene(out / "fatigue.toml") == scene()
+    assert load_scene(out / "scene.toml") == scene()
     assert (out / "pictures/fatigue.png").stat().st_size > 20_000
 
 
@@ -84,7 +85,7 @@ def test_what_a_line_contact_has(out: Path) -> None:
 def test_largest_pressure_is_that_of_a_run(out: Path, tmp_path: Path) -> None:
     """`evolvent run` of the same scene: the largest contact pressure is larger by what it interpolates to the limits
     of the tip-edge zones, 3 % at most, and its error bar is the same share of it."""
-    run_scene(scene("output.pictures=false"), tmp_path, quiet=True)
+    quietly(Run.of(scene("output.pictures=false")), tmp_path)
     reports = json.loads((tmp_path / "summary.json").read_text())["frictions"]
     for report in reports:
         row = largest(out, "pinion", "contact_pressure", "surface", report["friction"])
@@ -138,7 +139,7 @@ def test_facts(out: Path) -> None:
 def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:
     """All tables but that of lives."""
     alone = scene("contact.friction=0.1", "output.error_bars=false", "output.pictures=false")
-    assert len(run_fatigue(alone, tmp_path, quiet=True)) == 2
+    assert len(quietly(Fatigue.of(alone), tmp_path)) == 2
     assert sorted(path.name for path in tmp_path.glob("fatigue*.csv")) == [
         "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv", "fatigue_section.csv"]
 
@@ -146,7 +147,7 @@ def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:
 def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
     """A second call says --overwrite."""
     with pytest.raises(FolderError, match="--overwrite"):
-        run_fatigue(scene(), out, quiet=True)
+        quietly(Fatigue.of(scene()), out)
 
 
 @pytest.mark.parametrize(
@@ -192,10 +193,10 @@ def test_friction_reverses_at_the_pitch_point(out: Path) -> None:
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide gears and positions: the same values to 1e-6, and one line at the end."""
     code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
-    arguments = ["fatigue", str(out / "fatigue.toml"), "--out", str(tmp_path), "--set", "output.pictures=false"]
+    arguments = ["fatigue", str(out / "scene.toml"), "--out", str(tmp_path), "--set", "output.pictures=false"]
     done = run_script("-c", code, *arguments, ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
     assert done.stdout.count("done: ") == 1

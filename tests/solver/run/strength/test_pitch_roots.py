@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
-from evolvent.gears.meshing.root_meshes import RootMesh
-from evolvent.run.progress import Progress
-from evolvent.run.strength.pitch_roots import pitch_roots
+from evidence.calls import temporary_call
+from evolvent.run.strength.pitch_roots import pitch_roots, root_meshes
 from evolvent.scene.scene import load_scene
 from evolvent.strength.strain_gauges import Gauge, gauge_strain
 from evolvent_meshes.arrays import Floats
@@ -25,8 +23,8 @@ SETTINGS = (
 def strains(*settings: str) -> Floats:
     """Largest of both gears, by a short gauge at mid-face where the profile is at 44°."""
     scene = load_scene(ROOT / "demos/zhang2023.toml", [*SETTINGS, *settings])
-    with Progress(hidden=True) as progress:
-        (gears,) = pitch_roots(scene, RootMesh(), MPI.COMM_SELF, progress, angles=[]).roots
+    with temporary_call() as call:
+        (gears,) = pitch_roots(call, scene, root_meshes(scene)[0], []).roots
     gauges = [Gauge(member, True, np.radians(44.0), 0.0, 0.3) for member in Member]
     found = [gauge_strain(gauge, gears[gauge.member], scene.materials()[gauge.member]).max() for gauge in gauges]
     return np.array(found)

@@ -13,13 +13,14 @@ from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
 from evolvent.run.folder_checks import STUDY
+from evolvent.run.kinds.strength import Strength
 from evolvent.run.strength import strength_run
-from evolvent.run.strength.strength_run import run_strength
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
+from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 GAUGE = (
@@ -42,7 +43,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With error bars; said is what `run` says of the tips, and what it means for roots."""
     folder = tmp_path_factory.mktemp("strength")
-    plain, bears = run_strength(scene(), folder, quiet=True)
+    plain, bears = quietly(Strength.of(scene()), folder)
     assert plain.startswith("No tip relief: tip edges may bear")
     assert bears.startswith("Tip-edge contact at ") and " of 12 positions, on teeth with up to " in bears
     assert "stresses at the roots rest on contact of edges" in bears
@@ -52,9 +53,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_relieved_tips_that_do_not_bear_are_no_warning(tmp_path: Path) -> None:
     """Nothing is said of gears with tip relief whose edges do not bear."""
     relieved = "pinion.tip_relief_um=60", "wheel.tip_relief_um=60", "output.error_bars=false", "output.pictures=false"
-    assert not any("Tip-edge contact" in each or "No tip" in each for each in run_strength(
-        scene("sweep.positions=4", *relieved), tmp_path, quiet=True
-    ))
+    assert not any("Tip-edge contact" in each or "No tip" in each for each in quietly(Strength.of(scene("sweep.positions=4", *relieved)), tmp_path))
 
 
 def test_plot_draws_root_stress_again(out: Path, tmp_path: Path) -> None:
@@ -63,8 +62,8 @@ def test_plot_draws_root_stress_again(out: Path, tmp_path: Path) -> None:
 
 
 def test_folder_has_the_scene(out: Path) -> None:
-    """strength.toml with all its defaults is the scene that was computed."""
-    assert load_scene(out / "strength.toml") == scene()
+    """scene.toml with all its defaults is the scene that was computed."""
+    assert load_scene(out / "scene.toml") == scene()
 
 
 @pytest.mark.parametrize(("gear", "paper", "b"), [("pinion", 490.6, 530.1), ("wheel", 487.01, 546.5)])
@@ -109,7 +108,7 @@ def test_editions_and_tolerance_class_are_the_scenes(tmp_path: Path) -> None:
     """One edition, of 2006, with a tolerance class of 4: twice the 328.0 MPa of equal shares at d, times Y_DT; without
     error bars these are unknown."""
     one = scene("strength.editions=[2006]", "strength.tolerance_class=4", "output.error_bars=false")
-    run_strength(one, tmp_path, quiet=True)
+    quietly(Strength.of(one), tmp_path)
     found = rows(tmp_path / "strength.csv")
     assert [row["method"] for row in found if row["method"].startswith("ISO")] == ["ISO 6336-3:2006"] * 2
     assert float(found[0]["stress_MPa"]) == pytest.approx(656.0 * (2.366 - 0.666 * 2.14131), rel=3e-4)
@@ -119,7 +118,7 @@ def test_editions_and_tolerance_class_are_the_scenes(tmp_path: Path) -> None:
 def test_a_short_gauge_finds_the_stress(tmp_path: Path) -> None:
     """At 45° of the pinion's loaded side, where the tension is largest: E/(1 − ν²) times its largest strain is that
     stress, 1 %, with an error bar; a gauge that is longer than the root is refused before anything is solved."""
-    run_strength(scene(*GAUGE), tmp_path, quiet=True)
+    quietly(Strength.of(scene(*GAUGE)), tmp_path)
     tension = next(row for row in rows(tmp_path / "strength.csv") if row["method"] == "finite elements, tension")
     strains = rows(tmp_path / "gauges.csv")
     largest = max(strains, key=lambda row: float(row["strain_um_per_m"]))
@@ -127,7 +126,7 @@ def test_a_short_gauge_finds_the_stress(tmp_path: Path) -> None:
     assert stress == pytest.approx(float(tension["stress_MPa"]), rel=0.01)
     assert 0.0 < float(largest["strain_um_per_m_error"]) < 0.03 * float(largest["strain_um_per_m"])
     with pytest.raises(InputError, match="strain gauge"):
-        run_strength(scene(*GAUGE, "strength.gauges.length_mm=[30.0]"), tmp_path / "none", quiet=True)
+        quietly(Strength.of(scene(*GAUGE, "strength.gauges.length_mm=[30.0]")), tmp_path / "none")
     assert not (tmp_path / "none").exists()
 
 
@@ -138,7 +137,7 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
         raise MeshError("too coarse")
 
     monkeypatch.setattr(strength_run, "scene_root_meshes", lambda _: (RootMesh(), refuse))
-    *_, said = run_strength(scene(), tmp_path, quiet=True)
+    *_, said = quietly(Strength.of(scene()), tmp_path)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
 
 
@@ -146,7 +145,7 @@ def test_a_folder_in_use_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     """Another run computes into the folder: refused before anything is meshed."""
     monkeypatch.setattr(strength_run, "pitch_roots", lambda *_, **__: pytest.fail("meshed"))
     with locked(tmp_path), pytest.raises(FolderError, match="computes into, found process"):
-        run_strength(scene(), tmp_path, quiet=True)
+        quietly(Strength.of(scene()), tmp_path)
 
 
 def test_the_folder_of_a_study_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,16 +153,16 @@ def test_the_folder_of_a_study_is_refused(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(strength_run, "pitch_roots", lambda *_, **__: pytest.fail("meshed"))
     (tmp_path / STUDY).write_text("{}")
     with pytest.raises(FolderError, match=r"found a study \(study\.json\); allowed: a folder without"):
-        run_strength(scene(), tmp_path, overwrite=True, quiet=True)
+        quietly(Strength.of(scene()), tmp_path, overwrite=True)
 
 
 def test_results_are_not_replaced_unasked(out: Path, tmp_path: Path) -> None:
     """A second call is refused and says what to do; a file that no call has written stays, also with --overwrite."""
     with pytest.raises(FolderError, match="--overwrite computes it anew"):
-        run_strength(scene(), out, quiet=True)
+        quietly(Strength.of(scene()), out)
     (tmp_path / "strength.csv").write_text("mine")
     with pytest.raises(FolderError, match=r"strength\.csv"):
-        run_strength(scene(), tmp_path, overwrite=True, quiet=True)
+        quietly(Strength.of(scene()), tmp_path, overwrite=True)
     assert (tmp_path / "strength.csv").read_text() == "mine"
 
 
@@ -187,7 +186,7 @@ def test_gauges_without_their_values_are_refused() -> None:
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide the positions: the same stresses to 1e-6, and one line at the end."""
     code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["strength", "demos/zhang2023.toml", "--out", str(tmp_path / "out")]

@@ -12,7 +12,6 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.misaligned_position import misaligned_on
 from evolvent.gears.sweep.position_search import SharedPosition
 from evolvent.run.study.misalignment_line import line_name, solve_line
-from evolvent.run.study.plan.study_file import Computation
 from evolvent.run.study.results.scene_record import scene_folder
 from evolvent.run.study.scene_task import SceneTask, condense, solve
 from tests.support.checkout import ROOT
@@ -32,7 +31,7 @@ pair.misalignment_um = [4.0, -4.0, 0.0]
 """
 
 
-def tasks(folder: Path, text: str = LINE, compute: Computation = "excitation") -> list[SceneTask]:
+def tasks(folder: Path, text: str = LINE, compute: str = "excitation") -> list[SceneTask]:
     """Of all scenes, into folder/scenes."""
     found = scenes_of(folder, text)
     return [SceneTask(each.name, scene_folder(folder, each.name), compute, each.scene) for each in found if each.scene]

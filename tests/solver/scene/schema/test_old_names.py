@@ -11,7 +11,9 @@ from evolvent.commands.app import main
 from evolvent.results.archive.archive import Archive, fingerprint
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.store import arrays_bytes
+from evolvent.run.call import Options
 from evolvent.run.folder_checks import check_folder
+from evolvent.run.kinds.run import Run
 from evolvent.run.study.plan.study_file import load_study
 from evolvent.run.study.plan.study_scenes import study_scenes
 from evolvent.scene.scene import Scene, SceneError, kept_scene, scene_from_text, scene_from_values
@@ -158,12 +160,13 @@ def test_kept_scene_of_an_earlier_version_is_resumed_where_it_lies(tmp_path: Pat
     scene, nor one that was changed since."""
     path, scene = tmp_path / "scene.toml", scene_from_text(NEW)
     RunFolder(tmp_path).write_text("scene.toml", OLD)
-    check_folder(scene, tmp_path, True, False, path)
+    again = Options(resume=True, source=path)
+    check_folder(Run.of(scene), tmp_path, again)
     with pytest.raises(FolderError, match="own file"):
-        check_folder(scene_from_text(NEW, ["load.torque_Nm=90"]), tmp_path, True, False, path)
+        check_folder(Run.of(scene_from_text(NEW, ["load.torque_Nm=90"])), tmp_path, again)
     path.write_text(f"{OLD}# mine", encoding="utf-8")
     with pytest.raises(FolderError, match="own file"):
-        check_folder(scene, tmp_path, True, False, path)
+        check_folder(Run.of(scene), tmp_path, again)
 
 
 def test_commands_say_the_new_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,11 +8,12 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.results.archive.archive import Archive
-from evolvent.run.scene_run import run_scene
+from evolvent.run.kinds.run import Run
 from evolvent.wear import Archard, BlockSettings, wear_study, wearing_pair
 from evolvent.wear.results.archive import read_checkpoint
 from tests.support.gear_cases import spur_scene
 from tests.support.gears_api_curve import he_problem
+from tests.support.running.quiet import quietly
 
 WEAR = (
     "wear.cycles=4e4", "wear.pinion_mm2_per_N=1e-10", "wear.wheel_mm2_per_N=3e-10", "wear.report_at_cycles=2e4",
@@ -25,7 +26,7 @@ def test_wear_study_of_the_api_equals_that_of_a_run(tmp_path: Path) -> None:
     the same blocks. Exact: the same blocks, and the same depths at all flank nodes, to
     rounding."""
     scene = spur_scene(*WEAR)
-    run_scene(scene, tmp_path, quiet=True)
+    quietly(Run.of(scene), tmp_path)
     expected = read_checkpoint(Archive(tmp_path, scene))
     assert expected is not None
     pair = wearing_pair(he_problem(), Archard(1e-10, 3e-10), positions=4, comm=MPI.COMM_SELF)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evidence.solved_run import solved_run
 from evolvent.contact.hertz import line_pressure
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.run.coarse_run import solved_run
-from evolvent.run.pitch_run import pitch_of
+from evolvent.run.kept_pitch import pitch_of
 from evolvent.wear.gears.flank_grid import line_arc
 from evolvent.wear.results.mesh_passage import (
     ContactProfile,

@@ -23,15 +23,16 @@ from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.dynamics.transient.start_from_rest import start_from_rest
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
 from evolvent.fem.parallel.machine import machine_megabytes
-from evolvent.fem.parallel.ranks import on_first, together
-from evolvent.gears.gear_model import GearModel, Mesher, Preparer
-from evolvent.gears.meshing.levelled_meshes import run_mesh
+from evolvent.fem.parallel.ranks import together
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.solution.certified_pitch import certified_pitch
-from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.results.archive.run_cost import Timings
+from evolvent.run.call import Call
 from evolvent.run.dynamics.transient.checks import transient_section
-from evolvent.run.dynamics.transient.kept_cases import KeptCases, Statics
-from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, POSITIONS, Progress
+from evolvent.run.dynamics.transient.kept_cases import KeptCases
+from evolvent.run.kept_pitch import Meshes, kept_pitch
+from evolvent.run.progress import ERROR_BARS, Progress
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.errors import EvolventError
@@ -48,13 +49,40 @@ Found = Mapping[int, MeshPeriods | str]
 
 
 @dataclass(frozen=True)
+class Statics:
+    """Static positions of a transient: a certified pitch without inertia."""
+
+    scene: Scene
+    """Scene of the positions, on deflected flanks where their pitch needs them."""
+    positions: tuple[tuple[PositionResult, ...], ...]
+    """Results of the pitch at each friction coefficient."""
+    timings: Timings
+    """Wall time of the solution [s]."""
+
+
+def one_pitch(scene: Scene) -> GearProblem:
+    """The gear problem of a scene over a single pitch, which is the period of its motion."""
+    problem = gear_problem(scene)
+    return replace(problem, options=replace(problem.options, whole_engagement=False))
+
+
+def statics_scene(scene: Scene) -> Scene:
+    """The scene with all that positions without inertia depend on."""
+    return scene.model_copy(update={"transient": None, "dynamics": None})
+
+
+@dataclass(frozen=True)
 class PairMeshes:
     """Meshes and natural modes of a vibrating gear pair."""
 
-    mesh: Mesher = run_mesh
-    """Makes the mesh of a gear's sector."""
+    meshes: Meshes
+    """Meshes of both gears, and where the positions without inertia are stored."""
     least: int = LEAST
     """Natural modes of each harmonic, at least, where the scene does not say how many."""
+
+
+OWN = PairMeshes(Meshes(problem=one_pitch, stored_as=statics_scene))
+"""Meshes of the results that are reported."""
 
 
 @dataclass(frozen=True)
@@ -78,27 +106,23 @@ class PairCases:
     """Progress display of this rank's cases."""
 
     @staticmethod
-    def of(
-        scene: Scene, problem: GearProblem, settings: DriveSettings, on: PairMeshes, kept: KeptCases, comm: MPI.Comm,
-        progress: Progress, prepare: Preparer,
-    ) -> PairCases:
+    def of(call: Call, scene: Scene, settings: DriveSettings, on: PairMeshes, progress: Progress) -> PairCases:
         """Meshes and condenses the gears, solves the missing static positions and computes the natural modes.
         Collective. Raises MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, ArchiveError, WriteError.
         """
         section, dynamics = transient_section(scene), scene.dynamics or DynamicsSection()
-        known = on_first(comm, kept.read_static)
-        progress.stage(MESHING)
-        model = prepare(problem, comm, on.mesh, lambda: progress.stage(CONDENSING)).model
-        static = known or _statics(scene, model, kept, comm, progress)
-        model = replace(model, deflected=static.deflected)
+        pitch, problem = kept_pitch(call, scene, on.meshes), on.meshes.problem(scene)
+        gears = pitch.gears or call.gears(problem, on.meshes.mesh, shown=not on.meshes.part)
+        model = replace(gears.model, deflected=pitch.solved.deflected)
+        static = Statics(pitch.scene, tuple(pitch.solved.by_friction), pitch.timings)
         progress.stage(MODES, sum(len(harmonics(gear.z)) for gear in problem.pair.gears))
         sampled = max(section.speeds_rpm) / 60.0 * problem.pair.pinion.z * scene.sweep.positions  # Hz
         count, density = section.modes_per_harmonic, dynamics.density_kg_m3
         found = partial(resolved_modes, problem, model, density, sampled, count, on.least)
-        modes = together(comm, lambda: found(lambda: progress.advance(more=True)))
+        modes = together(call.comm, lambda: found(lambda: progress.advance(more=True)))
         constant_speed = section.drive == "constant_speed"
         pair = driven_pair(model, modes, settings, static.positions[0], section.mode_damping_ratio, constant_speed)
-        return PairCases(scene, problem, pair, static, settings, comm, progress)
+        return PairCases(scene, problem, pair, static, settings, call.comm, progress)
 
     @property
     def tasks(self) -> list[tuple[float, int]]:
@@ -215,14 +239,3 @@ class PairCases:
         if found.is_steady:
             load, energies = transient.pair.drive.torque / transient.pair.lever, found.energies
             certify_motion(found.mean_force / load, energies.left / energies.passed, transient.name)
-
-
-def _statics(scene: Scene, model: GearModel, kept: KeptCases, comm: MPI.Comm, progress: Progress) -> Statics:
-    """Solves and archives the positions without inertia, at each friction coefficient. Collective. Raises BalanceError.
-    """
-    pitch, frictions = uniform_pitch(model.pair.pinion.z, scene.sweep.positions), list(scene.contact.friction)
-    progress.stage(POSITIONS, len(pitch.angles))
-    solved = certified_pitch(model, pitch, frictions, comm, progress.position)
-    static = Statics(tuple(solved.by_friction), solved.deflected)
-    on_first(comm, lambda: kept.write_static(static))
-    return static

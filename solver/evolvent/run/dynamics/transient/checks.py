@@ -1,31 +1,16 @@
-"""Scenes and folders that `evolvent transient` refuses before it computes: scenes without its section, folders with
-results of an earlier call."""
+"""Scenes that `evolvent transient` refuses before it computes, and keys that it does not use."""
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from evolvent.check.planned_cost import too_many_modes
-from evolvent.dynamics.figures.all import TRANSIENT_PICTURES, TRANSIENT_SCENE
-from evolvent.dynamics.results.transient.beginning import TRANSIENT_START
-from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
-from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
-from evolvent.results.archive.run_folder import RunFolder
-from evolvent.run.folder_checks import require_unfinished
 from evolvent.scene.backlash import unnamed_backlash
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.errors import InputError
 
-KEPT_STATIC, KEPT_CASES = "results/transient_static.npz", "results/transient_*.npz"
-ANIMATION = "field_of_action.gif"
 UNUSED = "series_stiffness_N_per_um", "ground_damping_ratio", "mesh"
 """Keys of [dynamics] that `evolvent transient` does not use."""
-WRITTEN = (
-    TRANSIENT_SCENE.name, TRANSIENT.name, TRANSIENT_TEETH.name, TRANSIENT_START.name, TRANSIENT_FACTS.name,
-    *(f"pictures/{picture.name}" for picture in TRANSIENT_PICTURES), f"pictures/{ANIMATION}",
-)
 
 
 def transient_section(scene: Scene) -> TransientSection:
@@ -56,13 +41,3 @@ def unused_keys(section: DynamicsSection) -> list[str]:
         return []
     keys = ", ".join(f"dynamics.{name}" for name in names)
     return [f"{keys}: not in a transient, whose gears stand on rigid shafts and whose flanks are in contact themselves"]
-
-
-def prepared_folder(out: Path, resume: bool, overwrite: bool) -> list[str]:
-    """Checks the folder, and removes the cases of an earlier call with `overwrite`. Returns a sentence where there is
-    nothing to resume. Raises FolderError where files of others would be lost, or results without `overwrite`."""
-    every = *WRITTEN, KEPT_CASES
-    said = require_unfinished(out, every, (KEPT_STATIC, TRANSIENT.name), "cases", resume, overwrite)
-    if not resume:
-        RunFolder(out).remove([path.relative_to(out).as_posix() for path in sorted(out.glob(KEPT_CASES))])
-    return said

@@ -1,11 +1,10 @@
 """Cases of a transient on disk: a call that was stopped resumes with those that are missing.
 
-    OUT/results/transient_static.npz       the positions without inertia, at each friction coefficient
     OUT/results/transient_1500rpm_0.npz    a speed whose motion has ended, at the first friction coefficient
     OUT/results/transient_coarse_*.npz, transient_finer_*.npz     the same of the companion that gives the error bars
 
-Statics and cases depend on the scene but for its list of speeds, to which more can be added. By default cases depend on
-the highest speed, too: time steps at it say which natural modes move (`dynamics.transient.driven_pair`). They depend on
+Cases depend on the scene but for its list of speeds, to which more can be added; by default they depend on the highest
+speed, too: time steps at it say which natural modes move (`dynamics.transient.driven_pair`). They depend on
 all friction coefficients, as the damping is that of the statics at the first one.
 
 A case is written when it ends, by the rank that computed it. Ranks write files of their own; the list of files in the
@@ -21,7 +20,6 @@ from pathlib import Path
 
 import numpy as np
 
-from evolvent.dynamics.figures.all import TRANSIENT_SCENE
 from evolvent.dynamics.transient.divided_steps import StepsTaken
 from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
@@ -31,35 +29,26 @@ from evolvent.results.archive.archive import fingerprint
 from evolvent.results.archive.position_arrays import archived_result, result_arrays
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import Arrays, Store
+from evolvent.results.tables.table import SCENE_TITLE
 from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.scene.differences import differences
 from evolvent.scene.scene import Scene, SceneError, kept_scene
 from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.gears.pair import GearPair
 
+CASES = "results/transient_*.npz"
+"""Pattern of the files of all cases."""
 COARSE, FINER_STEPS = "_coarse", "_finer"
 """Kinds of cases of the companion: in the time steps of the scene, and in shorter ones."""
 BEGINNING = "beginning/"
 
 
 @dataclass(frozen=True)
-class Statics:
-    """Static positions of a transient: a certified pitch without inertia."""
-
-    positions: tuple[tuple[PositionResult, ...], ...]
-    """Results of the pitch at each friction coefficient."""
-    deflected: bool
-    """Whether contact was searched again on deflected flanks."""
-
-
-@dataclass(frozen=True)
 class KeptCases:
-    """Archived cases and static positions of a scene."""
+    """Archived cases of a scene."""
 
     cases: Store
     """Files with the identity of everything in the scene that a case depends on."""
-    statics: Store
-    """Files with the identity of what the positions without inertia depend on."""
     names: tuple[str, ...]
     """Names of the cases by their numbers: every speed at every friction coefficient."""
     pair: GearPair
@@ -74,22 +63,8 @@ class KeptCases:
         section = transient_section(scene)
         names = [f"{speed:.17g}rpm_{i}" for speed in section.speeds_rpm for i in range(len(scene.contact.friction))]
         highest = (max(section.speeds_rpm),) if section.modes_per_harmonic is None else ()
-        cases, statics = (
-            Store(RunFolder(out), _fingerprint(scene, section, speeds), partial(another, scene))
-            for speeds in (highest, ())
-        )
-        return KeptCases(cases, statics, tuple(names), pair, kind)
-
-    def read_static(self) -> Statics | None:
-        """The archived static positions; None where there are none. Raises ArchiveError."""
-        return self.statics.read(self._name("static"), self._static)
-
-    def write_static(self, static: Statics) -> None:
-        """Archives the positions without inertia. Raises WriteError, FolderError."""
-        arrays: Arrays = {"count": len(static.positions), "deflected": static.deflected}
-        for i, results in enumerate(static.positions):
-            arrays |= _positions_arrays(results, f"{i}/")
-        self.statics.write(self._name("static"), arrays)
+        cases = Store(RunFolder(out), _fingerprint(scene, section, highest), partial(another, scene))
+        return KeptCases(cases, tuple(names), pair, kind)
 
     def read(self) -> dict[int, MeshPeriods]:
         """Number of a finished case -> its mesh periods. Raises ArchiveError."""
@@ -106,10 +81,6 @@ class KeptCases:
 
     def _name(self, what: str) -> str:
         return f"results/transient{self.kind}_{what}.npz"
-
-    def _static(self, arrays: Arrays) -> Statics:
-        positions = tuple(tuple(self._positions(arrays, f"{i}/")) for i in range(int(arrays["count"])))
-        return Statics(positions, bool(arrays["deflected"]))
 
     def _periods(self, arrays: Arrays) -> MeshPeriods:
         return MeshPeriods(
@@ -129,11 +100,11 @@ class KeptCases:
 
 
 def another(scene: Scene, path: Path) -> str:
-    """Message on an archived case or on static positions of another scene than this one, with the keys that differ from
-    the scene of the last call that has ended."""
+    """Message on an archived case of another scene than this one, with the keys that differ from the scene of the
+    folder."""
     try:
-        differing = differences(kept_scene(path.parent.parent / TRANSIENT_SCENE.name), scene)
-    except SceneError:  # no call has ended there
+        differing = differences(kept_scene(path.parent.parent / SCENE_TITLE.name), scene)
+    except SceneError:
         differing = ""
     difference = f": this one has {differing}" if differing else ""
     return (

@@ -16,21 +16,21 @@ from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.shared_gears import shared_gears_name
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
-from evolvent.run.strength.pitch_roots import scene_root_meshes
-from evolvent.run.study.plan.study_file import Computation
+from evolvent.run.strength.pitch_roots import root_meshes, root_refinement
 from evolvent.scene.gear_problem import gear_problem, shares_gears
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
 
-SHARING: tuple[Computation, ...] = ("run", "excitation", "dynamics", "strength")
-"""Computations whose scenes can share gears. Scenes with wear have flanks of their own."""
+NOT_SHARING = "check", "wear"
+"""Computations whose scenes share no gears: flanks that wear are a scene's own."""
 
 
-def meshes(scene: Scene, compute: Computation) -> tuple[Mesher, ...]:
+def meshes(scene: Scene, compute: str) -> tuple[Mesher, ...]:
     """Meshes from which a scene's gears are condensed: those of the results, and those of error bars where it asks for
     them."""
-    both = scene_root_meshes(scene) if compute == "strength" else (run_mesh, companion_mesh)
+    roots = [each.mesh for each in root_meshes(scene)]
+    both = tuple(roots) if compute == "strength" else (run_mesh, companion_mesh)
     return both if wanted_output(scene).error_bars else both[:1]
 
 
@@ -39,17 +39,17 @@ def own_torque(scene: Scene) -> SceneTorques:
     return SceneTorques(scene.model_copy(update={"wear": None}), (1e3 * scene.load.torque_Nm,))
 
 
-def condensed_problem(scene: Scene, compute: Computation) -> GearProblem:
+def condensed_problem(scene: Scene, compute: str) -> GearProblem:
     """Gear problem that a computation of the scene condenses. Raises SceneError."""
     if compute == "dynamics":
         return scene_torques(scene, (scene.dynamics or DynamicsSection()).torque_percents).problem
     return gear_problem(scene)
 
 
-def on_shared_meshes(scenes: Sequence[Scene], compute: Computation) -> list[Scene]:
+def on_shared_meshes(scenes: Sequence[Scene], compute: str) -> list[Scene]:
     """The scenes, those with the same gears on meshes that serve all of their torques. Those of an excitation are sized
     for the heaviest one, for the reason in `evolvent.run.dynamics.scene_torques`."""
-    if compute not in SHARING or compute == "dynamics":  # which has meshes for a range of torques of its own
+    if compute in NOT_SHARING or compute == "dynamics":  # which has meshes for a range of torques of its own
         return list(scenes)
     torques: dict[str, set[float]] = defaultdict(set)
     names = [_without_torque(scene) for scene in scenes]
@@ -59,17 +59,17 @@ def on_shared_meshes(scenes: Sequence[Scene], compute: Computation) -> list[Scen
     return [_serving(scene, (narrowest(torques[name]), max(torques[name]))) for name, scene in zip(names, scenes)]
 
 
-def gears_names(scenes: Sequence[Scene], compute: Computation) -> list[str]:
+def gears_names(scenes: Sequence[Scene], compute: str) -> list[str]:
     """Name of the gears that each scene has in common with another one; empty where it has its own."""
-    if compute not in SHARING:
+    if compute in NOT_SHARING:
         return [""] * len(scenes)
     names = [_name(scene, compute) if shares_gears(scene) else "" for scene in scenes]
     counts = Counter(names)
     return [name if counts[name] > 1 else "" for name in names]
 
 
-def _name(scene: Scene, compute: Computation) -> str:
-    times = scene_root_meshes(scene)[0].times if compute == "strength" else 0
+def _name(scene: Scene, compute: str) -> str:
+    times = root_refinement(scene) if compute == "strength" else 0
     return f"{shared_gears_name(condensed_problem(scene, compute))} {len(meshes(scene, compute))} {times}"
 
 

@@ -7,18 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
 
+from evolvent.run.kinds.all import KINDS
 from evolvent.scene.scene import Scene, SceneError, future_warning
 from evolvent.scene.scene_text import STUDY_FILE, require_kind, require_shallow, scene_text, toml_values
 from evolvent.scene.schema.errors import InputProblem, key_problem, problems_of, shown, validation_error
 from evolvent.scene.schema.old_names import Warn, new_names
 from evolvent.scene.schema.section import SceneSection, key
 
-Computation = Literal["check", "run", "excitation", "dynamics", "strength", "wear"]
-COMPUTATIONS: tuple[Computation, ...] = get_args(Computation)
+COMPUTATIONS = ("check", *(kind.name for kind in KINDS if kind.in_studies))
+"""What a study can compute of each scene."""
 MOST_SCENES = 1_000_000
 """Largest number of scenes of a study."""
 PARTS = "grid", "list", "latin_hypercube.ranges"
@@ -116,9 +117,9 @@ class StudyFile(SceneSection):
                      max_length=200)
     scene: str = key("the base scene: a path relative to the folder of the study file", "the name of a scene file",
                      min_length=1, max_length=1000)
-    compute: Computation = key(
+    compute: str = key(
         "what is computed of each scene, as the command of this name does; wear: as `run` of a scene with [wear]",
-        ", ".join(f'"{name}"' for name in COMPUTATIONS), default="run",
+        ", ".join(f'"{name}"' for name in COMPUTATIONS), default="run", pattern=f"^({'|'.join(COMPUTATIONS)})$",
     )
     figures: Texts | None = key(
         "figures that the table gathers, by name; those of the computation by default", "a list of names of figures",

@@ -13,7 +13,7 @@ from typing import Any
 from evolvent.results.archive.archive import fingerprint
 from evolvent.run.study.plan.parameters import axes, combinations
 from evolvent.run.study.plan.shared_gears import gears_names, on_shared_meshes
-from evolvent.run.study.plan.study_file import Computation, StudyFile
+from evolvent.run.study.plan.study_file import StudyFile
 from evolvent.scene.scene import Scene, SceneError, future_warning, scene_from_values
 from evolvent.scene.scene_text import apply_overrides, nested_values, scene_text
 from evolvent.scene.schema.errors import InputProblem, shown
@@ -114,7 +114,7 @@ def _take_out(values: Values, name: str) -> None:
     values.pop(last, None)
 
 
-def _sharing(scenes: Sequence[StudyScene], compute: Computation) -> list[StudyScene]:
+def _sharing(scenes: Sequence[StudyScene], compute: str) -> list[StudyScene]:
     """The scenes with the names of the gears that several of them share, on meshes that serve the torques of all of
     these."""
     known = {number: each.scene for number, each in enumerate(scenes) if each.scene is not None}

@@ -9,7 +9,7 @@ from evolvent.dynamics.results.curves import LOADED, SECANT, TANGENT
 from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
 from evolvent.dynamics.results.tables import HARMONICS
 from evolvent.results.archive.error_bar_data import FigureErrors
-from evolvent.run.study.plan.study_file import Computation, StudyFile
+from evolvent.run.study.plan.study_file import StudyFile
 from evolvent.run.study.results.check_figures import CHECK, CheckFigures
 from evolvent.run.study.results.gathering import ERROR, Figure
 from evolvent.run.study.results.study_table import OWN
@@ -89,12 +89,12 @@ def _of_wear() -> list[Figure]:
     return found + _of_run()
 
 
-CATALOGUE: Mapping[Computation, list[Figure]] = {
+CATALOGUE: Mapping[str, list[Figure]] = {
     "check": _of_check(), "run": _of_run(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
     "strength": _of_strength(), "wear": _of_wear(),
 }
 """Computation -> named figures that its scenes have."""
-DEFAULTS: Mapping[Computation, tuple[str, ...]] = {
+DEFAULTS: Mapping[str, tuple[str, ...]] = {
     "check": ("transverse_contact_ratio", "total_contact_ratio", "pitch_point_pressure_MPa", "pinion_tip_thickness_mm",
               "wheel_tip_thickness_mm"),
     "run": ("transmission_error_peak_to_peak_um", "max_pressure_MPa", "mesh_stiffness_N_per_mm_um", "loss_percent",

@@ -11,10 +11,11 @@ import pytest
 
 from evolvent.run.dynamics.transient import cases as module
 from evolvent.run.dynamics.transient.kept_cases import KeptCases
-from evolvent.run.dynamics.transient.transient_run import run_transient
+from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
+from tests.support.running.quiet import quietly
 
 POSITIONS, TOLERANCE = 10, 0.008
 TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
@@ -45,7 +46,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Of the motions nothing has to be said: they are steady, the tolerance is reached. Of the tables, that 4.5
     positions lie in a period of the pair's own vibration, once a speed."""
     folder = tmp_path_factory.mktemp("divided")
-    seen, said = run_transient(scene(), folder, quiet=True)
+    seen, said = quietly(Transient.of(scene()), folder)
     assert "4.26 positions a period; wanted 8: the tables" in seen
     assert "elements across the contact" in said
     return folder
@@ -54,7 +55,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_coarse_tolerance_is_named(tmp_path: Path) -> None:
     """A tolerance that nothing exceeds: 4.26 time steps in a period of the pair's own vibration are too few, and it is
     the tolerance that allows them."""
-    said = run_transient(scene("transient.tolerance=0.5", "contact.friction=0"), tmp_path, quiet=True)
+    said = quietly(Transient.of(scene("transient.tolerance=0.5", "contact.friction=0")), tmp_path)
     (coarse,) = (each for each in said if each.startswith("2000 r/min: "))
     assert "4.26 time steps a period; wanted 8: transient.tolerance = 0.5 lets" in coarse
 
@@ -94,14 +95,14 @@ def test_kept_cases_have_their_steps(out: Path, monkeypatch: pytest.MonkeyPatch,
     assert KeptCases.of(scene("transient.tolerance=0.005"), cases.pair, out).cases.identity != cases.cases.identity
     before = [(out / name).read_bytes() for name in TABLES]
     monkeypatch.setattr(module, "until_steady", None)
-    run_transient(scene(), out, resume=True, quiet=True)
+    quietly(Transient.of(scene()), out, resume=True)
     assert [(out / name).read_bytes() for name in TABLES] == before
 
 
 def test_a_tolerance_that_is_not_reached_is_named(tmp_path: Path) -> None:
     """Halves at most, and a tolerance of a millionth: a sentence has the error, the length and what to do."""
     few = scene("transient.tolerance=1e-6", "transient.most_parts=2", "contact.friction=0", "transient.mesh_periods=2")
-    unsteady, beyond, seen, _ = run_transient(few, tmp_path, quiet=True)
+    unsteady, beyond, seen, _ = quietly(Transient.of(few), tmp_path)
     (fact,) = facts(tmp_path)
     assert "not steady" in unsteady
     assert "2000 r/min, μ = 0: wanted an error of a time step of at most transient.tolerance = 1e-06" in beyond
@@ -113,7 +114,7 @@ def test_a_tolerance_that_is_not_reached_is_named(tmp_path: Path) -> None:
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks take a coefficient each: the same tables to 1e-6, the same numbers of steps."""
     code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     words = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out")]

@@ -14,10 +14,11 @@ from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arrays
 from evolvent.run.dynamics.transient import cases as module
 from evolvent.run.dynamics.transient.kept_cases import KeptCases, another
-from evolvent.run.dynamics.transient.transient_run import run_transient
+from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
+from tests.support.running.quiet import quietly
 
 TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
 SETTINGS = (
@@ -76,7 +77,7 @@ def kept(folder: Path) -> list[str]:
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("transient")
-    run_transient(scene(), folder, quiet=True)
+    quietly(Transient.of(scene()), folder)
     return folder
 
 
@@ -85,10 +86,10 @@ def test_another_scene_is_named_by_its_keys(tmp_path: Path) -> None:
     read, there are none."""
     wanted, path = scene("load.torque_Nm=90"), tmp_path / "results/transient_static.npz"
     assert "found that of another one; --resume" in another(wanted, path)
-    (tmp_path / "transient.toml").write_text(scene().resolved_toml(), encoding="utf-8")
+    (tmp_path / "scene.toml").write_text(scene().resolved_toml(), encoding="utf-8")
     torque = f"{scene().load.torque_Nm:g}"
     assert f"found that of another one: this one has load.torque_Nm = 90 (kept: {torque});" in another(wanted, path)
-    (tmp_path / "transient.toml").write_text("no scene", encoding="utf-8")
+    (tmp_path / "scene.toml").write_text("no scene", encoding="utf-8")
     assert "found that of another one; --resume" in another(wanted, path)
 
 
@@ -107,24 +108,24 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(module, "until_steady", counted)
     with pytest.raises(Killed):
-        run_transient(scene(), tmp_path, quiet=True)
+        quietly(Transient.of(scene()), tmp_path)
     assert kept(tmp_path) == ["transient_2000rpm_0.npz", "transient_static.npz"]
     with pytest.raises(FolderError, match=r"found results/transient_static\.npz of an earlier call"):
-        run_transient(scene(), tmp_path, quiet=True)
+        quietly(Transient.of(scene()), tmp_path)
     with pytest.raises(ArchiveError, match="found that of another one"):
-        run_transient(scene("transient.mesh_periods=50"), tmp_path, resume=True, quiet=True)
+        quietly(Transient.of(scene("transient.mesh_periods=50")), tmp_path, resume=True)
     with pytest.raises(Killed):
-        run_transient(scene(), tmp_path, resume=True, quiet=True)
+        quietly(Transient.of(scene()), tmp_path, resume=True)
     assert kept(tmp_path) == [
         "transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_coarse_static.npz",
         "transient_finer_2000rpm_0.npz", "transient_finer_2000rpm_1.npz", "transient_static.npz",
     ]
     monkeypatch.setattr(module, "certified_pitch", None)
-    said = run_transient(scene(), tmp_path, resume=True, quiet=True)
+    said = quietly(Transient.of(scene()), tmp_path, resume=True)
     assert len(counts) == 2 + 4 + 2
     assert same_tables(tmp_path, out)
     monkeypatch.setattr(module, "until_steady", None)
-    assert run_transient(scene(), tmp_path, resume=True, quiet=True) == said
+    assert quietly(Transient.of(scene()), tmp_path, resume=True) == said
     assert same_tables(tmp_path, out)
 
 
@@ -135,14 +136,14 @@ def test_overwriting_begins_anew(out: Path, tmp_path: Path, monkeypatch: pytest.
     assert kept(tmp_path) == ["transient_2000rpm_1.npz"]
     monkeypatch.setattr(module, "certified_pitch", stopped)
     with pytest.raises(Killed):
-        run_transient(scene(), tmp_path, overwrite=True, quiet=True)
+        quietly(Transient.of(scene()), tmp_path, overwrite=True)
     assert kept(tmp_path) == []
 
 
 def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a call without them nothing is computed again but the companion; the tables are those of a call with them.
     """
-    run_transient(scene("output.error_bars=false"), tmp_path, quiet=True)
+    quietly(Transient.of(scene("output.error_bars=false")), tmp_path)
     assert kept(tmp_path) == ["transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_static.npz"]
     assert not same_tables(tmp_path, out)
     counts: list[int] = []
@@ -153,7 +154,7 @@ def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypa
         return solved(*given)
 
     monkeypatch.setattr(module, "until_steady", counted)
-    run_transient(scene(), tmp_path, resume=True, quiet=True)
+    quietly(Transient.of(scene()), tmp_path, resume=True)
     assert len(counts) == 4
     assert same_tables(tmp_path, out)
 
@@ -174,8 +175,8 @@ def test_speeds_that_are_added_later(
         return scene(*few, f"transient.speeds_rpm={list(each)}")
 
     whole, grown = tmp_path / "whole", tmp_path / "grown"
-    run_transient(of(more), whole, quiet=True)
-    run_transient(of(speeds), grown, quiet=True)
+    quietly(Transient.of(of(more)), whole)
+    quietly(Transient.of(of(speeds)), grown)
     counts: list[str] = []
     solved = module.until_steady
 
@@ -185,7 +186,7 @@ def test_speeds_that_are_added_later(
 
     monkeypatch.setattr(module, "until_steady", counted)
     monkeypatch.setattr(module, "certified_pitch", None)
-    run_transient(of(more), grown, resume=True, quiet=True)
+    quietly(Transient.of(of(more)), grown, resume=True)
     assert len(counts) == 1 and str(*(set(more) - set(speeds))) in counts[0]
     assert same_tables(grown, whole)
 
@@ -197,14 +198,13 @@ def test_a_higher_speed_resolves_other_modes(out: Path, tmp_path: Path) -> None:
     faster = KeptCases.of(scene("transient.speeds_rpm=[2000,2600]"), earlier.pair, out)
     with pytest.raises(ArchiveError, match="lower speeds may be added"):
         faster.read()
-    assert faster.read_static() is not None
     assert sorted(KeptCases.of(scene("transient.speeds_rpm=[900,2000]"), earlier.pair, out).read()) == [2, 3]
 
 
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
     """The call begins from the start, with a sentence."""
     few = scene("contact.friction=0", "transient.mesh_periods=2")
-    said = run_transient(few, tmp_path, resume=True, quiet=True)
+    said = quietly(Transient.of(few), tmp_path, resume=True)
     assert said[0].startswith("--resume found nothing to continue")
 
 
@@ -224,7 +224,7 @@ def test_a_case_that_cannot_be_read_is_refused(out: Path, tmp_path: Path) -> Non
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_go_on(run_script: Run, tmp_path: Path, ranks: int) -> None:
+def test_ranks_go_on(run_script: RunScript, tmp_path: Path, ranks: int) -> None:
     """Where the last rank fails in its case, that of the other one is kept; resumed on both ranks it is not computed
     again, and the tables are those of two ranks that were not stopped."""
     whole, cut, words = tmp_path / "whole", tmp_path / "cut", ["transient", "demos/he2022.toml"]

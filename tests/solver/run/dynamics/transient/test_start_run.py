@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from evolvent.run.dynamics.transient.summary_lines import summary_lines
-from evolvent.run.dynamics.transient.transient_run import run_transient
+from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
+from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 POSITIONS = 40
@@ -39,7 +40,7 @@ def rows(path: Path) -> list[dict[str, float]]:
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("rest")
-    run_transient(scene('transient.start="rest"'), folder, quiet=True)
+    quietly(Transient.of(scene('transient.start="rest"')), folder)
     return folder
 
 
@@ -79,16 +80,16 @@ def test_kept_cases_have_the_start(out: Path, tmp_path: Path) -> None:
     """With --resume from ended cases: the same table."""
     again = copytree(out, tmp_path / "again")
     (again / "transient.csv").unlink()
-    run_transient(scene('transient.start="rest"', "output.pictures=false"), again, resume=True, quiet=True)
+    quietly(Transient.of(scene('transient.start="rest"', "output.pictures=false")), again, resume=True)
     assert (again / "transient_start.csv").read_text() == (out / "transient_start.csv").read_text()
 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: Run, tmp_path: Path, ranks: int) -> None:
+def test_ranks_find_the_same(run_script: RunScript, tmp_path: Path, ranks: int) -> None:
     """Each of two ranks takes a friction coefficient: the tables are those of one process."""
     settings = *SETTINGS, "contact.friction=[0.0,0.1]", 'transient.start="rest"', *PLAIN
-    run_transient(load_scene(ROOT / "demos/he2022.toml", list(settings)), tmp_path / "one", quiet=True)
+    quietly(Transient.of(load_scene(ROOT / "demos/he2022.toml", list(settings))), tmp_path / "one")
     words = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "two"), "--quiet"]
     done = run_script("-c", WHOLE, *words, *(f"--set={each}" for each in settings), ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
@@ -98,10 +99,9 @@ def test_ranks_find_the_same(run_script: Run, tmp_path: Path, ranks: int) -> Non
 
 def test_from_statics_there_is_no_such_table(tmp_path: Path) -> None:
     """Nor a line of it, nor one that an earlier call has left."""
-    run_transient(scene('transient.start="rest"', *PLAIN), tmp_path / "x", quiet=True)
+    quietly(Transient.of(scene('transient.start="rest"', *PLAIN)), tmp_path / "x")
     assert (tmp_path / "x/transient_start.csv").exists()
-    said = run_transient(scene("dynamics.series_stiffness_N_per_um=700", *PLAIN), tmp_path / "x", overwrite=True,
-                         quiet=True)
+    said = quietly(Transient.of(scene("dynamics.series_stiffness_N_per_um=700", *PLAIN)), tmp_path / "x", overwrite=True)
     assert not (tmp_path / "x/transient_start.csv").exists()
     assert "from rest" not in "".join(summary_lines(tmp_path / "x"))
     assert any(line.startswith("dynamics.series_stiffness_N_per_um: not in a transient") for line in said)
@@ -111,4 +111,4 @@ def test_an_inertia_below_the_body_is_refused(tmp_path: Path) -> None:
     """The meshed body of He's pinion has 7.4e-3 kg m², and natural modes that move all of its mass."""
     light = scene("dynamics.pinion_inertia_kg_m2=3e-3", "transient.modes_per_harmonic=1")
     with pytest.raises(InputError, match=r"pinion_inertia_kg_m2: wanted at least that of the gear's body, 0\.0073"):
-        run_transient(light, tmp_path / "x", quiet=True)
+        quietly(Transient.of(light), tmp_path / "x")

@@ -16,10 +16,11 @@ from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.run.dynamics.transient import cases as module
 from evolvent.run.dynamics.transient import moving_companion
 from evolvent.run.dynamics.transient.summary_lines import summary_lines
-from evolvent.run.dynamics.transient.transient_run import run_transient
+from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
+from tests.support.running.quiet import quietly
 
 SETTINGS = (
     "transient.mesh_periods=200", "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
@@ -32,7 +33,7 @@ FEW = "mesh.level=quick", "sweep.positions=6", "transient.speeds_rpm=[3000]", "d
 
 
 def run(folder: Path, *settings: str) -> list[str]:
-    return run_transient(load_scene(ROOT / "demos/he2022.toml", [*SETTINGS, *settings]), folder, quiet=True)
+    return quietly(Transient.of(load_scene(ROOT / "demos/he2022.toml", [*SETTINGS, *settings])), folder)
 
 
 def facts(folder: Path) -> list[dict[str, Any]]:

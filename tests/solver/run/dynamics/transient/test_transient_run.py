@@ -17,11 +17,12 @@ from evolvent.dynamics.transient.step_balance import StepBalance, StepEnd, StepE
 from evolvent.gears.solution.certificates import PitchImbalance
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import FolderError
-from evolvent.run.dynamics.transient.transient_run import run_transient
+from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
-from tests.support.running.processes import Run, on_ranks
+from tests.support.running.processes import RunScript, on_ranks
+from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 POSITIONS = 10
@@ -43,7 +44,7 @@ def rows(path: Path) -> list[dict[str, float]]:
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("transient")
-    slow, fast, few = run_transient(scene(), folder, quiet=True)
+    slow, fast, few = quietly(Transient.of(scene()), folder)
     assert slow.startswith("30 r/min: the pair's own vibration")
     assert "error bars may not hold" in slow and "error bars" not in fast
     assert fast.startswith("2000 r/min: the pair's own vibration")
@@ -151,21 +152,21 @@ def test_statics_out_of_balance_end_the_run(tmp_path: Path, monkeypatch: pytest.
     right = vars(PositionResult)["friction_loss"].fget
     monkeypatch.setattr(PositionResult, "friction_loss", property(lambda result: 2.0 * right(result)))
     with pytest.raises(PitchImbalance, match="wanted an energy balance"):
-        run_transient(scene("transient.speeds_rpm=[2000]"), tmp_path, quiet=True)
+        quietly(Transient.of(scene("transient.speeds_rpm=[2000]")), tmp_path)
     assert not (tmp_path / "results").exists()
 
 
 def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
     """A second call names --resume and --overwrite."""
     with pytest.raises(FolderError, match="--resume goes on from its cases, --overwrite computes them anew"):
-        run_transient(scene(), out, quiet=True)
+        quietly(Transient.of(scene()), out)
 
 
 def test_a_motion_that_does_not_repeat_yet_is_named(tmp_path: Path) -> None:
     """Two mesh periods of a lightly damped pair from statics are not enough."""
     few = scene("transient.speeds_rpm=[2000]", "contact.friction=0", "transient.mesh_periods=2",
                 "dynamics.damping_ratio=0.01", "output.pictures=false", "output.animation=false")
-    said = run_transient(few, tmp_path, quiet=True)
+    said = quietly(Transient.of(few), tmp_path)
     assert "not steady after 2 mesh periods" in said[0]
 
 
@@ -174,7 +175,7 @@ def test_back_flanks_are_refused(tmp_path: Path) -> None:
     thrown = scene("transient.speeds_rpm=[4200]", "contact.friction=0", "dynamics.damping_ratio=0.005",
                    "dynamics.backlash_um=1", "transient.spectral_radius=0.9", "transient.drive=free")
     with pytest.raises(BackFlanks, match="back flanks"):
-        run_transient(thrown, tmp_path, quiet=True)
+        quietly(Transient.of(thrown), tmp_path)
     assert not (tmp_path / "transient.csv").exists()
 
 
@@ -182,14 +183,14 @@ def test_scenes_that_cannot_be_computed(tmp_path: Path) -> None:
     """No section; two positions."""
     bare = load_scene(ROOT / "demos/he2022.toml", ["mesh.level=quick"])
     with pytest.raises(InputError, match=r"transient\.speeds_rpm"):
-        run_transient(bare, tmp_path, quiet=True)
+        quietly(Transient.of(bare), tmp_path)
     with pytest.raises(SceneError, match=r"sweep\.positions"):
-        run_transient(scene("sweep.positions=2"), tmp_path, quiet=True)
+        quietly(Transient.of(scene("sweep.positions=2")), tmp_path)
 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide speeds and coefficients: the same tables to 1e-6, and one line at the end."""
     code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--set", "output.pictures=false",

@@ -11,22 +11,31 @@ from pathlib import Path
 import pytest
 
 from evolvent.commands.app import main
-from evolvent.dynamics.figures.all import TRANSIENT_SCENE
 from evolvent.dynamics.results.transient.beginning import TRANSIENT_START, StartRow
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
+from evolvent.results.archive.run_cost import Cost, write_cost
 from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.scene_files import write_scene
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.run.redraw import FROM_TABLES, plot_folder
+from evolvent.run.kinds.all import KINDS, Kind
+from evolvent.run.kinds.redraw import plot_folder
+from evolvent.scene.scene import load_scene
+from tests.support.checkout import ROOT
 from tests.support.made_rows import made
 from tests.support.running.transient_tables import transient_tables
+from tests.support.scene_texts import WEAR
+
+FROM_TABLES = sorted(
+    {picture for kind in KINDS for picture in kind.load().outputs.pictures}, key=lambda picture: picture.name
+)
 
 
 @pytest.fixture
 def out(tmp_path: Path) -> Path:
     """A folder as `evolvent transient` leaves it, without the picture."""
     folder, tables = RunFolder(tmp_path), transient_tables((1500.0, 3000.0), (0.0, 0.1))
-    folder.write_text(TRANSIENT_SCENE.name, 'title = "a pair"\n')
+    write_scene(load_scene(ROOT / "demos/he2022.toml", ["transient.speeds_rpm=[1500,3000]"]), folder)
     TRANSIENT.write(folder, tables.rows)
     TRANSIENT_TEETH.write(folder, tables.teeth)
     TRANSIENT_FACTS.write(folder, tables.facts)
@@ -54,20 +63,22 @@ def test_start_from_rest_is_drawn_again(out: Path, capsys: pytest.CaptureFixture
     assert "2 pictures in" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_unfinished_command_is_named(tmp_path: Path, kind: Kind) -> None:
+    """A folder in which a command has begun, without its first table: the command that goes on in it."""
+    folder, wearing = RunFolder(tmp_path), WEAR if kind.name == "wear" else ()
+    write_scene(load_scene(ROOT / "demos/he2022.toml", ["contact.friction=[0.1]", *wearing]), folder)
+    write_cost(folder, Cost(command=kind.command))
+    with pytest.raises(FolderError, match=re.escape(f"run `evolvent {kind.command} SCENE.toml --out {tmp_path} --resume`")):
+        plot_folder(tmp_path)
+
+
 @pytest.mark.parametrize(("name", "remedy"), [
     ("study.json", "`evolvent study STUDY.toml --out {out}` draws its pictures again"),
-    ("load_100.0_percent/scene.toml", "run `evolvent loads SCENE.toml --out {out} --resume` first"),
-    ("fatigue_life.csv", "run `evolvent fatigue SCENE.toml --out {out} --overwrite` first"),
-    ("strength.toml", "run `evolvent strength SCENE.toml --out {out} --overwrite` first"),
-    ("results/transient_static.npz", "run `evolvent transient SCENE.toml --out {out} --resume` first"),
-    ("dynamics.json", "run `evolvent dynamics SCENE.toml --out {out} --resume` first"),
-    ("results/excitation.npz", "run `evolvent excitation SCENE.toml --out {out} --resume` or `evolvent dynamics"),
-    ("results/state.npz", "run `evolvent run SCENE.toml --out {out} --resume` first"),
     ("notes.txt", "run `evolvent run SCENE.toml --out {out}` first"),
 ])
-def test_unfinished_command_is_named(tmp_path: Path, name: str, remedy: str) -> None:
-    """A folder with one file of a command, not with all tables of a picture: the command that goes on in it."""
-    (tmp_path / name).parent.mkdir(exist_ok=True)
+def test_folder_without_results_is_refused(tmp_path: Path, name: str, remedy: str) -> None:
+    """A folder of a study, or of files that no command has written: what draws its pictures."""
     (tmp_path / name).write_text("begun", encoding="utf-8")
     with pytest.raises(FolderError, match=re.escape(remedy.format(out=tmp_path))):
         plot_folder(tmp_path)

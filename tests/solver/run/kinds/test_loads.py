@@ -13,10 +13,11 @@ from evolvent.commands.app import Exit, main
 from evolvent.gears import shared_gears as gear_loads
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.tables.load_table import LoadRow
-from evolvent.run.load_list import load_scenes, run_loads
-from evolvent.run.scene_run import run_scene
+from evolvent.run.kinds.loads import Loads
+from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import SceneError, load_scene
 from tests.support.gear_cases import spur_scene
+from tests.support.running.quiet import quietly
 from tests.support.running.redrawn import redrawn
 
 SHORT = (
@@ -37,7 +38,7 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
 
     monkeypatch.setattr(gear_loads, "condensed_gears", counted)
     scene, out = spur_scene(*SHORT), tmp_path / "out"
-    assert run_loads(load_scenes(scene, [50.0, 100.0]), out, quiet=True) == []
+    assert quietly(Loads.of(scene, [50.0, 100.0]), out) == []
     assert len(calls) == 2
     with open(out / "loads.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
@@ -57,9 +58,9 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
             assert float(row[key]) == pytest.approx(figures[key], rel=1e-8)
             assert float(row[key + "_error"]) == pytest.approx(figures["estimated_error"][key], rel=1e-8)
     assert redrawn(out, tmp_path) == {"loads.png"}
-    run_loads(load_scenes(scene, [50.0, 100.0]), out, resume=True, quiet=True)
+    quietly(Loads.of(scene, [50.0, 100.0]), out, resume=True)
     assert len(calls) == 2
-    run_scene(load_scene(folders[0] / "scene.toml"), tmp_path / "alone", quiet=True)
+    quietly(Run.of(load_scene(folders[0] / "scene.toml")), tmp_path / "alone")
     alone, found = (
         json.loads((folder / "summary.json").read_text(encoding="utf-8"))["frictions"][0]
         for folder in (tmp_path / "alone", folders[0])
@@ -71,15 +72,15 @@ def test_resuming_with_a_heavier_load_is_refused_before_anything_is_computed(tmp
     """Its meshes serve other torques, so that no kept result would fit: the error names the key and the command, and no
     folder is made for the new load."""
     scene = spur_scene(*SHORT)
-    run_loads(load_scenes(scene, [50.0, 100.0]), tmp_path, quiet=True)
+    quietly(Loads.of(scene, [50.0, 100.0]), tmp_path)
     with pytest.raises(ArchiveError, match=r"mesh_torques_Nm(.|\n)*`evolvent loads \.\.\. --overwrite`"):
-        run_loads(load_scenes(scene, [50.0, 100.0, 120.0]), tmp_path, resume=True, quiet=True)
+        quietly(Loads.of(scene, [50.0, 100.0, 120.0]), tmp_path, resume=True)
     assert not (tmp_path / "load_120.0_percent").exists()
 
 
 def test_each_load_has_a_folder_of_its_own() -> None:
     """Loads that differ by less than a tenth of a percent, the heaviest first. Exact."""
-    scenes = load_scenes(spur_scene(*SHORT), [5.0, 12.51, 12.54, 100.0])
+    scenes = Loads.of(spur_scene(*SHORT), [5.0, 12.51, 12.54, 100.0]).runs
     names = ["load_100.0_percent", "load_012.54_percent", "load_012.51_percent", "load_005.0_percent"]
     assert list(scenes) == names
 
@@ -88,7 +89,7 @@ def test_gears_that_wear_have_no_load_list() -> None:
     """The remedy is named."""
     wearing = ("wear.cycles=1e5", "wear.pinion_mm2_per_N=1e-12", "wear.wheel_mm2_per_N=1e-12")
     with pytest.raises(SceneError, match="without \\[wear\\]"):
-        load_scenes(spur_scene(*SHORT, *wearing), [50.0, 100.0])
+        Loads.of(spur_scene(*SHORT, *wearing), [50.0, 100.0])
 
 
 @pytest.mark.parametrize("percents", ["0,50", "50,50", "fifty", "2000"])

@@ -1,0 +1,80 @@
+"""A scene under a list of torques: a run for each, on gears that are condensed once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+from evolvent.gears.shared_gears import SharedGears
+from evolvent.results.archive.archive import Archive
+from evolvent.results.figures.loads_picture import LOADS_PICTURE
+from evolvent.results.tables.load_table import LOADS, RUNS, load_results
+from evolvent.run.call import Call
+from evolvent.run.computation import Computation, Outputs, Results
+from evolvent.run.compute import compute
+from evolvent.run.folder_checks import check_folder
+from evolvent.run.kinds.run import Run
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.part_torque import under_torque
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.errors import InputProblem, SceneError
+from evolvent.scene.skips import with_deflected_flanks
+
+
+@dataclass(frozen=True)
+class Loads(Computation[None]):
+    """Runs under some torques, one after the other, each in a folder of its own."""
+
+    runs: Mapping[str, Run]
+    """Name of its folder -> run under each torque, on meshes that serve all of them; the heaviest first."""
+    name: ClassVar[str] = "loads"
+    command: ClassVar[str] = "loads"
+    outputs: ClassVar[Outputs] = Outputs((LOADS.name,), (LOADS_PICTURE,), stored=(LOADS.name,))
+    is_list: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, scene: Scene, percents: Sequence[float] = (100.0,)) -> Self:
+        """Runs of a scene under parts of its torque. percents: different ones. Raises SceneError where the gears wear,
+        or where one of the torques is refused."""
+        if scene.wear is not None:
+            found, allowed = "a load list of gears that wear", "a scene without [wear]"
+            raise SceneError([InputProblem("wear", found, allowed, "delete the section, or take `evolvent run`")])
+        torques = {percent: scene.load.torque_Nm * percent / 100.0 for percent in sorted(percents, reverse=True)}
+        served = min(torques.values()), max(torques.values())
+        return cls(
+            scene, {_folder(percent): Run(under_torque(scene, torque, served)) for percent, torque in torques.items()}
+        )
+
+    @property
+    def sized(self) -> list[Scene]:
+        """Scenes of all runs."""
+        return [run.scene for run in self.runs.values()]
+
+    def solve(self, call: Call) -> None:
+        """Computes the runs; those that are complete stay. Collective; raises what `compute` does."""
+        call.on_first(lambda: self._check_folders(call))
+        call.on_first(lambda: call.begin(self.scene, resumed=call.resume))
+        gears = SharedGears([gear_problem(run.scene) for run in self.runs.values()])
+        for name, run in self.runs.items():
+            compute(run, call.folder.out / name, replace(call.options, prepare=gears.prepare, label=name))
+
+    def results(self, call: Call, solved: None) -> Results:
+        """The table of all runs."""
+        rows = [each.row for each in load_results(call.folder.out / name for name in self.runs)]
+        return Results(self.scene, [LOADS.of(rows)])
+
+    def _check_folders(self, call: Call) -> None:
+        """Raises FolderError and ArchiveError, before the first run is computed, where one cannot go on."""
+        for name, run in self.runs.items():
+            folder = call.folder.out / name
+            check_folder(run, folder, call.options)
+            archives = [Archive(folder, each, self.command) for each in (with_deflected_flanks(run.scene), run.scene)]
+            if call.resume and not any(archive.holds_scene() for archive in archives):
+                archives[-1].read_state(run.scene.gear_pair())
+
+
+def _folder(percent: float) -> str:
+    """Name of the folder of a run, different for each percentage."""
+    whole, point, decimals = str(float(percent)).partition(".")
+    return RUNS.format(f"{whole:0>3}{point}{decimals}")

@@ -1,0 +1,117 @@
+"""The positions of a scene: solved one after the other, certified before they are stored.
+
+Problem: He's spur pair in plane strain, three positions of a pitch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evidence.calls import temporary_call
+from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.solution import certificates
+from evolvent.gears.solution.certificates import BalanceError, PitchImbalance
+from evolvent.run.call import Call, Options
+from evolvent.run.kept_pitch import OWN, friction_groups, kept_pitch, resume_point
+from evolvent.scene.scene import Scene
+from tests.support.gear_cases import spur_scene
+from tests.support.running.patches import calling_first
+
+
+@pytest.fixture
+def prepared() -> list[int]:
+    """One entry for each time that the gears are condensed."""
+    return []
+
+
+@pytest.fixture
+def call(tmp_path: Path, prepared: list[int]) -> Iterator[Call]:
+    """A call on this rank alone."""
+    with temporary_call(tmp_path, counting(prepared)) as made:
+        yield made
+
+
+def counting(prepared: list[int]) -> Options:
+    """Options of a call that counts how often the gears are condensed."""
+    counted = calling_first(prepare_model, lambda *_, **__: prepared.append(len(prepared)))
+    return Options(quiet=True, prepare=counted)
+
+
+def resumed(call: Call) -> Call:
+    """The call, which goes on from what is stored."""
+    return replace(call, options=replace(call.options, resume=True))
+
+
+def scene_of(*settings: str) -> Scene:
+    return spur_scene("mesh.level=quick", "sweep.positions=3", *settings)
+
+
+def test_pitch_has_its_positions_in_order(call: Call) -> None:
+    """Three equal steps of the angular pitch, of which only the last closes it; each is stored with the state after
+    it, from which the next one starts."""
+    scene = scene_of("contact.friction=0.2")
+    pitch = kept_pitch(call, scene)
+    stored = pitch.archive.read_sweep(scene.gear_pair())
+    assert [position.closes for position in stored] == [False] * (len(stored) - 1) + [True]
+    assert [each.angle for each in pitch.solved.positions] == [2.0 * np.pi / 16 / 3 * k for k in range(3)]
+    last, state = stored[-1].state, pitch.archive.read_state(scene.gear_pair())
+    assert state is not None and last.beyond_nominal == state.beyond_nominal
+    assert last.histories[0] is not None and state.histories[0] is not None
+    assert np.array_equal(last.histories[0].flux, state.histories[0].flux)
+
+
+def test_solved_pitch_is_resumed_at_its_end(call: Call, prepared: list[int]) -> None:
+    """All positions are stored; resumed there, the gears are not condensed again and no time is spent."""
+    scene = scene_of("contact.friction=0.0")
+    pitch = kept_pitch(call, scene)
+    assert pitch.timings.positions > 0.0 and pitch.timings.total > pitch.timings.factor > 0.0
+    end = resume_point(resumed(call), scene, OWN)
+    assert end.is_end and len(end.positions) == 3
+    again = kept_pitch(resumed(call), scene)
+    assert len(prepared) == 1 and again.timings.total == 0.0
+
+
+def test_position_out_of_balance_is_not_stored(call: Call, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A position that fails its certificate is raised as BalanceError before it is stored."""
+    monkeypatch.setattr(certificates, "STORED_LIMIT", -1.0)
+    scene = scene_of("contact.friction=0.0")
+    with pytest.raises(BalanceError, match="wanted a balance error of at most"):
+        kept_pitch(call, scene)
+    assert not resume_point(resumed(call), scene, OWN).positions
+
+
+def test_finished_friction_groups_are_not_solved_again(call: Call, prepared: list[int]) -> None:
+    """Coefficients with gears of their own, resumed at their end: no gear is condensed again."""
+    scene = scene_of("contact.friction=[0.0, 0.2]", "exact.parts=reuse")
+    kept_pitch(call, scene)
+    assert len(prepared) == 2
+    again = kept_pitch(resumed(call), scene)
+    assert len(prepared) == 2 and again.timings.total == 0.0
+
+
+def test_unbalanced_pitch_is_solved_again_on_the_same_gears(
+    call: Call, prepared: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Energy that no pitch can balance: solved once more on deflected flanks, with the gears condensed once."""
+    monkeypatch.setattr(certificates, "BALANCE_LIMIT", -1.0)
+    with pytest.raises(PitchImbalance, match="wanted an energy balance within"):
+        kept_pitch(call, scene_of("contact.friction=0.0"))
+    assert len(prepared) == 1
+    assert "solved again, on deflected flanks" in (call.folder.out / "run.log").read_text(encoding="utf-8")
+
+
+def test_friction_coefficients_in_groups_give_the_same_pitch(tmp_path: Path, prepared: list[int]) -> None:
+    """Two coefficients, each solved with gears of its own: the transmission errors of both together within 1e-8."""
+    errors = []
+    for name, settings in (("together", ()), ("alone", ("exact.parts=reuse",))):
+        scene = scene_of("contact.friction=[0.0, 0.2]", *settings)
+        with temporary_call(tmp_path / name, counting(prepared)) as call:
+            swept = kept_pitch(call, scene).solved.positions
+        errors.append([result.transmission_error for position in swept for result in position.results])
+    assert len(friction_groups(scene)) == 2 and len(prepared) == 3
+    assert len(errors[0]) == 6 and errors[1] == pytest.approx(errors[0], rel=1e-8)

@@ -5,13 +5,12 @@ Everything that is wrong with a scene is reported in one `SceneError` before any
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
 
-from pydantic import BaseModel, ValidationError, model_validator
+from pydantic import ValidationError, model_validator
 
 from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.fem.material import Material
@@ -24,7 +23,7 @@ from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
 from evolvent.scene.schema.dependence import without_main_key
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
-from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, section_of, shown, validation_error
+from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, shown, validation_error
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.schema.gears import GearSection, PairSection
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
@@ -33,6 +32,7 @@ from evolvent.scene.schema.output import ExactSection, OutputSection
 from evolvent.scene.schema.section import SceneSection, key
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.schema.wear import WearSection
+from evolvent.scene.toml_lines import toml_lines
 from evolvent.scene.vibration_limits import PlannedVibration, impossible
 from evolvent_meshes.csv_tables import TableError
 from evolvent_meshes.gears.member import MemberName
@@ -209,7 +209,7 @@ class Scene(SceneSection):
 
         A default that is derived from other keys is a comment, so that it is derived again when these are changed.
         """
-        return "\n".join(_toml_lines(self, derived_values(self))) + "\n"
+        return "\n".join(toml_lines(self, derived_values(self))) + "\n"
 
 
 def derived_values(scene: Scene) -> dict[str, Any]:
@@ -231,44 +231,6 @@ def derived_values(scene: Scene) -> dict[str, Any]:
             f"material.{name}.nu": material.poissons_ratio,
         }
     return values
-
-
-def _toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "") -> Iterator[str]:
-    """The lines of a section: its keys, then its subsections."""
-    if name:
-        yield f"\n[{name}]"
-    subsections = []
-    for key_name, field in type(section).model_fields.items():
-        value, dotted = getattr(section, key_name), f"{name}.{key_name}" if name else key_name
-        if optional := section_of(field):
-            subsections.append((dotted, value if value is not None else optional))
-        elif value is not None:
-            yield f"{key_name} = {_toml_value(value)}  # {field.description}"
-        elif dotted in derived:
-            yield f"# {key_name} = {_toml_value(derived[dotted])}  # {field.description}"
-        else:
-            yield f"# {key_name}: not given  # {field.description}"
-    for subname, value in subsections:
-        yield from _toml_lines(value, derived, subname) if isinstance(value, BaseModel) else _not_given(value, subname)
-
-
-def _not_given(section: type[BaseModel], name: str) -> Iterator[str]:
-    """The lines of an optional section that the scene does not have."""
-    yield f"\n# [{name}]: not given"
-    for key_name, field in section.model_fields.items():
-        if inner := section_of(field):
-            yield from _not_given(inner, f"{name}.{key_name}")
-        else:
-            yield f"# {key_name}: not given  # {field.description}"
-
-
-def _toml_value(value: object) -> str:
-    """A text, number, truth value or tuple of them as TOML, which has the same escape sequences as JSON."""
-    if isinstance(value, tuple):
-        return "[" + ", ".join(map(_toml_value, value)) + "]"
-    if isinstance(value, (str, bool)):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    return repr(value)
 
 
 def future_warning(sentence: str) -> None:

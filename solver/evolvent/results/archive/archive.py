@@ -26,9 +26,8 @@ from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.position_arrays import archived_result, result_arrays
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Arrays, Store, read_as
-from evolvent.scene.differences import charts, differences, essence
-from evolvent.scene.scene import Scene, SceneError, derived_values, kept_scene
-from evolvent.scene.schema.old_names import first_names
+from evolvent.scene.differences import differences, identity
+from evolvent.scene.scene import Scene, SceneError, kept_scene
 from evolvent_meshes.gears.pair import GearPair
 
 STATE, IN_POSITION = "state.npz", "state/"
@@ -142,9 +141,7 @@ class Archive:
 def fingerprint(scene: Scene) -> str:
     """SHA-256 of all that the results depend on: the scene's values without its title and output section, and the
     contents, not the paths, of its flank charts."""
-    bare = essence(scene)
-    values = json.dumps([first_names(bare.model_dump(mode="json")), derived_values(bare), *charts(scene)])
-    return hashlib.sha256(values.encode()).hexdigest()
+    return hashlib.sha256(json.dumps(identity(scene)).encode()).hexdigest()
 
 
 def _shape(arrays: Arrays, name: str) -> GearShape:

@@ -101,7 +101,7 @@ def main(
     inertias, load = (INERTIA, INERTIA), float(excitation.loaded.forces[NOMINAL])
     models = {
         "F(x, φ)": DriveSettings(inertias, DAMPING_RATIO, BACKLASH),
-        "k(φ) x": DriveSettings(inertias, DAMPING_RATIO, BACKLASH, damped_apart=True, mesh="secant"),
+        "k(φ) x": DriveSettings(inertias, DAMPING_RATIO, BACKLASH, damping_in_separation=True, mesh="secant"),
     }
     pairs = {name: drive(gears.pair, excitation, load, settings) for name, settings in models.items()}
     swept = {name: over_speed(pair, 101 if quick else 401) for name, pair in pairs.items()}

@@ -20,9 +20,9 @@ from evidence.tables import write_rows
 from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
 from evolvent.dynamics.excitation.misaligned_mesh import misaligned_figures
 from evolvent.gears.gear_model import GearModel, Mesher
-from evolvent.gears.load_list import LoadList
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
+from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.run.study.plan.study_file import load_study
 from evolvent.run.study.plan.study_scenes import study_scenes
@@ -45,7 +45,7 @@ def processor_time(work: Callable[[], object]) -> float:
 def measured() -> list[Measured]:
     """Processor time of condensing, of a position in a sweep and in the map, and of the whole."""
     scenes = [each.scene for each in study_scenes(load_study(STUDY), STUDY, (), "") if each.scene is not None]
-    gears, condensing, sweep, of_map = LoadList([gear_problem(scene) for scene in scenes]), 0.0, 0.0, 0.0
+    gears, condensing, sweep, of_map = SharedGears([gear_problem(scene) for scene in scenes]), 0.0, 0.0, 0.0
     positions = scenes[0].sweep.positions
     angles = np.array(uniform_pitch(scenes[0].pinion.teeth, positions).angles)[:SOLVED]
     for mesh in (run_mesh, companion_mesh):
@@ -62,17 +62,17 @@ def measured() -> list[Measured]:
     ]
 
 
-def _model(gears: LoadList, scene: Scene, mesh: Mesher) -> GearModel:
+def _model(gears: SharedGears, scene: Scene, mesh: Mesher) -> GearModel:
     return gears.prepare(gear_problem(scene), MPI.COMM_SELF, mesh).model
 
 
-def _swept(gears: LoadList, scenes: Sequence[Scene], mesh: Mesher, angles: Floats) -> None:
+def _swept(gears: SharedGears, scenes: Sequence[Scene], mesh: Mesher, angles: Floats) -> None:
     """The gears without misalignment under all torques, as `evolvent excitation` sweeps them."""
     straight = max((each for each in scenes if not each.pair.misalignment_um), key=lambda each: each.load.torque_Nm)
     loaded_mesh(_model(gears, straight, mesh), _torques(scenes), angles, MPI.COMM_SELF)
 
 
-def _mapped(gears: LoadList, scenes: Sequence[Scene], mesh: Mesher, angles: Floats) -> None:
+def _mapped(gears: SharedGears, scenes: Sequence[Scene], mesh: Mesher, angles: Floats) -> None:
     """All misalignments under each torque, as a study solves them."""
     for torque in _torques(scenes):
         line = [each for each in scenes if 1e3 * each.load.torque_Nm == torque]

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from evolvent.contact.transient.settings import TransientSettings as TransientSettings
     from evolvent.contact.transient.solver import CoarseTimeStepWarning as CoarseTimeStepWarning
     from evolvent.contact.transient.solver import Moment as Moment
+    from evolvent.contact.transient.solver import MotionState as MotionState
     from evolvent.contact.transient.solver import Transient as Transient
     from evolvent.fem.backend.dolfinx_mesh import mesh_from_dolfinx as mesh_from_dolfinx
     from evolvent.fem.body import Body as Body

@@ -65,8 +65,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "meshes.gears.modifications", "scene.schema.guesses"),
     "scene": (
-        "meshes", "meshes.gears", "meshes.gears.form", "meshes.gears.modifications", "fem", "gears.problem",
-        "gears.meshing", "scene.schema", "scene.schema.guesses",
+        "meshes", "meshes.gears", "meshes.gears.form", "meshes.gears.modifications", "fem", "contact.problem",
+        "gears.problem", "gears.meshing", "scene.schema", "scene.schema.guesses",
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (

@@ -19,7 +19,7 @@ import numpy as np
 from evolvent.contact.hertz import line_half_width, line_peak_pressure, line_pressure
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.contact.contact_points import ContactPoints
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.pressure.contact_slices import Slices
@@ -121,7 +121,7 @@ def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: flo
     pair, estimate, d = scene.gear_pair(), scene.hertz_estimate(), flank.points.shape[1]
     line = Ridge(pair, even_line_load(scene, angle, friction), estimate.modulus)
     error = 0.02 + 0.5 * PEAK_TO_PEAK * np.cos(angle * pair.pinion.z)
-    stand = Stand(pair, angle, (error / pair.pinion.base_radius, 0.0))
+    stand = PairRotation(pair, angle, (error / pair.pinion.base_radius, 0.0))
     teeth = [each.tooth for each in contact_lines(pair, angle)]
     parts = [contact_points(stand, flank, tooth, line, friction) for tooth in teeth]
     points = ContactPoints.joined(parts)
@@ -159,7 +159,7 @@ class Ridge:
         return line_half_width(self.q, self.pair.relative_curvature_radius(ξ), self.modulus)
 
 
-def contact_points(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> ContactPoints:
+def contact_points(stand: PairRotation, flank: Surface, tooth: int, line: Ridge, friction: float) -> ContactPoints:
     """Contact points of a tooth pair: three heights a layer of cells, and forty points across, exact for an ellipse."""
     pair, d = stand.pair, flank.points.shape[1]
     heights, widths = layer_points(flank)
@@ -192,7 +192,7 @@ def layer_points(flank: Surface) -> tuple[Floats, Floats]:
     return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
 
 
-def nodal(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> tuple[Ints, Ints, Floats]:
+def nodal(stand: PairRotation, flank: Surface, tooth: int, line: Ridge, friction: float) -> tuple[Ints, Ints, Floats]:
     """Tooth (n,), node (n,) and traction (n, d) [MPa] at the nodes near a tooth's contact line."""
     pair, d = stand.pair, flank.points.shape[1]
     z = flank.points[:, 2] if d == 3 else np.zeros(len(flank.points))

@@ -94,7 +94,7 @@ FULL = (
     RunCase(f"{LIGHT}, 50 N·m, plain", FIRST, "standard", (*PLAIN, ONE, *SLENDER, "load.torque_Nm=50"), (), 180.0, 4e3),
     RunCase(f"{LIGHT}, 10 N·m, plain", FIRST, "standard", (*PLAIN, ONE, *SLENDER, "load.torque_Nm=10"), (), 360.0, 6e3),
 )
-BESIDE = FULL[1], RunCase(f"{YANG}, plain, one mesh", HELICAL, "standard", (*PLAIN, ONE), ("--no-skip=two-level",))
+BESIDE = FULL[1], RunCase(f"{YANG}, plain, one mesh", HELICAL, "standard", (*PLAIN, ONE), ("--exact=two-level",))
 """The same scene with flanks in levels, and in one mesh with their body."""
 BESIDE_BAR = 0.2
 """At most, of the seconds of the first over those of the second."""

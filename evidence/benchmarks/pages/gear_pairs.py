@@ -67,7 +67,7 @@ def _skips_said(rows: Sequence[SkipRow]) -> list[str]:
     beyond = [row.skip for row in rows if not row.difference <= row.tolerance]
     said = f"Beyond their tolerance: {', '.join(beyond)}." if beyond else "All differences are within the tolerances."
     return [
-        f"Whole runs at level quick (wall time, pictures and error bars off), with a skip and with `--no-skip`. {said}"
+        f"Whole runs at level quick (wall time, pictures and error bars off), with a skip and with `--exact`. {said}"
     ]
 
 

@@ -69,7 +69,7 @@ VARIED: Mapping[str, tuple[str, ...]] = {
 }
 """What the wear with vibration is computed with. Elastic bodies have the series stiffness that puts them at the paper's
 resonance, as the demo's does rigid ones: `he_models`."""
-PAPER_MODEL = 'dynamics.mesh="secant"', "dynamics.damped_apart=true"
+PAPER_MODEL = 'dynamics.mesh="secant"', "dynamics.damping_in_separation=true"
 
 
 def figures(runs: HeRuns) -> Named:
@@ -102,7 +102,7 @@ def figures(runs: HeRuns) -> Named:
         "matched": (at_paper_speed,),
         "paper_matched": (paper_at_paper_speed, *PAPER_MODEL),
         "damped": ("dynamics.damping_ratio=0.15",),
-        "apart": ("dynamics.damped_apart=true",),
+        "apart": ("dynamics.damping_in_separation=true",),
     }
     yield from surface.figures(SURFACE)
     for name, settings in cases.items():

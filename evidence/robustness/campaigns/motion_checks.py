@@ -55,7 +55,7 @@ def _works(model: TorsionalModel, period: float, state: Floats) -> tuple[tuple[f
     at = np.searchsorted(path.phases, phases - 1e-14)
     s, v = path.displacement[at], path.velocity[at]
     force, rate, touching = _mesh(model, period, phases, s)
-    acting = model.damping * np.logical_or(touching, model.damped_apart)
+    acting = model.damping * np.logical_or(touching, model.damping_in_separation)
     after = np.array([path.displacement[-1], path.velocity[-1]])
     taken = rule @ (force * v + acting * (v - rate) * v + model.ground_damping * v**2)
     change = 0.5 * model.mass * (after[1] ** 2 - state[1] ** 2) - model.load * (after[0] - state[0])
@@ -117,6 +117,6 @@ def _mesh(model: TorsionalModel, period: float, phases: Floats, s: Floats) -> tu
         pressed += stiffness * np.maximum(x - side.depths[-1], 0.0)
         force[inside] += side.sign * pressed[inside]
         touching |= inside
-        if not model.damped_apart:
+        if not model.damping_in_separation:
             rate[inside] = side.sign * slope[inside] / period
     return force, rate, touching

@@ -175,7 +175,7 @@ def _suddenly(draw: Draw, pair: GearPair, smooth: Drive, settings: DriveSettings
     side = stepped_side(phases, smooth.mean_stiffness * levels / (levels @ np.diff(phases)))
     stepped = TorsionalModel(
         equivalent_mass(pair, settings.inertias), model.load, paper_law(side, settings.backlash), model.damping,
-        model.damped_apart, model.ground_damping,
+        model.damping_in_separation, model.ground_damping,
     )
     rest = smooth.moving_stiffness, smooth.equivalent_mass, smooth.body_frequency
     return Drive(stepped, smooth.mean_stiffness, smooth.teeth, settings, *rest)

@@ -31,7 +31,7 @@ WRONG: Mapping[str, tuple[str, ...]] = {
     "--level quick|standard|fine": ("", "Quick", "quick ", "ultra", "1", 'fine"', "[]", "\udcff"),
     "--set KEY=VALUE": ("", "=", "load.torque_Nm", "load.torque_Nm=", "=100", "load=100", "load.torque_Nm=1 2",
                         "a.b.c=1", "load..torque_Nm=1", "[load]=1", "load.torque_Nm=100\n[x]", "#=1", "\udcff=1"),
-    "--no-skip NAME": ("", "windows", "all", "Window", "window,plane", "\udcff"),
+    "--exact NAME": ("", "windows", "all", "Window", "window,plane", "\udcff"),
     "--percent LIST": ("", ",", "50,", "0", "-50", "50,50", "nan", "1e9", "fifty", "50;100", "50%",
                        ",".join(map(str, range(1, 1001)))),
     "--workers N": ("", "0", "-1", "two", "1.5", "1e3", "nan", "1" * 400),

@@ -18,7 +18,7 @@ from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.gears.condensed_gear import matching_cuts
 from evolvent.gears.contact.tooth_contact import GAP
 from evolvent.gears.full_gear import whole_mesh
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.pressure.contact_slices import fitted_peak
 from evolvent.scene.gear_problem import gear_problem
@@ -57,7 +57,7 @@ class ThetaPair:
 
     def figures(self, rotations: Floats) -> list[PairFigures]:
         """At pinion rotations [rad], one after the other. Raises NotConverged, NotPositiveDefinite."""
-        stands = [Stand(self._scene.gear_pair(), float(rotation)) for rotation in rotations]
+        stands = [PairRotation(self._scene.gear_pair(), float(rotation)) for rotation in rotations]
         solutions = sweep(self.problem(), [Step(placements=_placements(stand)) for stand in stands])
         return [_figures(stand, solution) for stand, solution in zip(stands, solutions, strict=True)]
 
@@ -87,11 +87,11 @@ def _whole_gear(scene: Scene, gear: Member) -> MeshData:
     return replace(mesh, facets={**mesh.facets, "flank": chosen})
 
 
-def _placements(stand: Stand) -> tuple[Placement, ...]:
+def _placements(stand: PairRotation) -> tuple[Placement, ...]:
     return tuple(Placement(stand.rotation(gear, 2), stand.centre(gear, 2)) for gear in Member)
 
 
-def _figures(stand: Stand, solution: Solution) -> PairFigures:
+def _figures(stand: PairRotation, solution: Solution) -> PairFigures:
     contact = solution.contacts[0]
     arm = contact.points - stand.centre(Member.WHEEL, 2)
     force = contact.weights[:, None] * contact.traction

@@ -62,7 +62,8 @@ def _skip_lines(scene: Scene) -> str:
     lines = ["Skipped", *(f"  {skip.name:<{column}}{skip.sentence}" for skip in left_out)]
     off = switched_off(scene)
     long_way = [*([", ".join(off)] if off else []), *filter(None, [one_mesh_reason(scene)])]
-    return "\n".join([*lines, *(["Computed the long way", *(f"  {line}" for line in long_way)] if long_way else [])])
+    exact = ["Computed without simplification", *(f"  {line}" for line in long_way)] if long_way else []
+    return "\n".join([*lines, *exact])
 
 
 def _warning_lines(scene: Scene) -> list[str]:
@@ -185,7 +186,7 @@ def _operating_rows(scene: Scene) -> list[Row]:
     dynamics = scene.dynamics
     if dynamics is None or dynamics.operating_rpm is None:
         return []
-    return [_one(f"  varied by vibration at, running {dynamics.coming}", "n", "r/min", 1, dynamics.operating_rpm)]
+    return [_one(f"  varied by vibration at, running {dynamics.direction}", "n", "r/min", 1, dynamics.operating_rpm)]
 
 
 def _wear_rows(wear: WearSection, estimate: HertzEstimate) -> list[Row]:

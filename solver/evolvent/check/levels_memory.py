@@ -22,7 +22,7 @@ PATCH_PER_NODE = {False: 1.25, True: 1.73}
 the finest level of the pinion has."""
 PATCH_LAYERS, PATCH_ROWS, WHOLE_PROFILE = 5, 9, 17
 """Coarse layers and rows of a level that the largest patch has, but all rows where there are no more than the last of
-these (`evolvent.gears.two_level.towers.Axis`)."""
+these (`evolvent.gears.two_level.coarse_axis.Axis`)."""
 
 
 def levels_megabytes(sectors: Sequence[LevelledSector], ranks: int) -> float:

@@ -21,7 +21,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
-from evolvent.scene.schema.output import SkipSection
+from evolvent.scene.schema.output import ExactSection
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.gears.member import Member
@@ -240,11 +240,11 @@ def _lightest_that_fits(scene: Scene, needed: MemoryEstimate, processes: int, th
 def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:
     """Ever coarser scenes, each with the command-line options for it: first with all shortcuts, then at coarser levels,
     then with fewer elements across the contact."""
-    long_ways = [name for name in ("one-sector", "coarse-body", "two-level", "plane") if name in scene.skip.off]
+    long_ways = [name for name in ("one-sector", "coarse-body", "two-level", "plane") if name in scene.exact.parts]
     if long_ways:
-        kept = SkipSection(off=tuple(name for name in scene.skip.off if name not in long_ways))
-        scene = scene.model_copy(update={"skip": kept})
-        yield f"{' and '.join(long_ways)} out of skip.off (--no-skip)", scene
+        kept = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in long_ways))
+        scene = scene.model_copy(update={"exact": kept})
+        yield f"{' and '.join(long_ways)} out of exact.parts (--exact)", scene
     if (count := scene.mesh.elements_per_contact_width) is None:
         for level in LEVELS[LEVELS.index(scene.mesh.level) + 1 :]:
             yield f"--level {level}", _meshed(scene, level=level)

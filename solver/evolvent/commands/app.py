@@ -22,7 +22,8 @@ from evolvent.commands.exit import (
     tolerate_terminal_encoding,
 )
 from evolvent.commands.looking import LOOKING
-from evolvent.commands.options import UsageError, Version, usage_message
+from evolvent.commands.options import UsageError, Version, usage_message, with_new_names
+from evolvent.commands.scene_argument import warn
 from evolvent.commands.study import STUDY
 from evolvent.fem.backend.cache_folder import keep_fonts
 from evolvent.fem.parallel.mpi_start import is_first
@@ -75,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _status(given: list[str]) -> int:
     """The exit status of a command."""
     try:
-        status = app(args=given or ["--help"], prog_name="evolvent", standalone_mode=False)
+        status = app(args=with_new_names(given, warn) or ["--help"], prog_name="evolvent", standalone_mode=False)
     except UsageError as error:
         return leave(usage_message(error), Exit.BAD_INPUT).exit_code
     except typer.Abort:

@@ -14,9 +14,9 @@ import typer
 from evolvent.commands.command import Command
 from evolvent.commands.exit import STATUSES, reported
 from evolvent.commands.options import (
+    ExactParts,
     Force,
     LevelOption,
-    NoSkip,
     Overrides,
     Overwrite,
     Percents,
@@ -50,7 +50,7 @@ def _command(kind: Kind) -> Command:
         percents: Percents = (),
         level: LevelOption = None,
         settings: Overrides = None,
-        no_skip: NoSkip = None,
+        exact: ExactParts = None,
         force: Force = False,
         resume: Resume = False,
         overwrite: Overwrite = False,
@@ -58,7 +58,7 @@ def _command(kind: Kind) -> Command:
         petsc: PetscOptions = None,
     ) -> None:
         with reported(parallel=True, advice=f"; `evolvent {kind.name} ... --resume` continues"):
-            loaded = loaded_scene(scene, level, settings, no_skip, world())
+            loaded = loaded_scene(scene, level, settings, exact, world())
             require(not (resume and overwrite), BOTH)
             if petsc is not None:
                 os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts

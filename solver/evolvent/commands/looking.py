@@ -11,7 +11,7 @@ import typer
 
 from evolvent.commands.command import Command
 from evolvent.commands.exit import reported
-from evolvent.commands.options import Force, LevelOption, NoSkip, Overrides, SceneFile, given_number, given_path
+from evolvent.commands.options import ExactParts, Force, LevelOption, Overrides, SceneFile, given_number, given_path
 from evolvent.commands.scene_argument import loaded_scene, require, require_room
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.files import require_writable, write_bytes
@@ -33,7 +33,7 @@ def check(
     scene: SceneFile,
     level: LevelOption = None,
     settings: Overrides = None,
-    no_skip: NoSkip = None,
+    exact: ExactParts = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="FILE.png", help="Picture of the tooth forms.", parser=given_path)
     ] = None,
@@ -44,7 +44,7 @@ def check(
     That is: the gear data, the Hertz estimates, what will be skipped, and an estimate of dofs and memory.
     """
     with reported():
-        loaded = loaded_scene(scene, level, settings, no_skip, warns=False)
+        loaded = loaded_scene(scene, level, settings, exact, warns=False)
         from evolvent.check.check_report import overview
 
         if out is not None:
@@ -62,7 +62,7 @@ def mesh(
     out: Annotated[Path, typer.Option("--out", metavar="FILE.msh", help="The gmsh file to write.", parser=given_path)],
     level: LevelOption = None,
     settings: Overrides = None,
-    no_skip: NoSkip = None,
+    exact: ExactParts = None,
     force: Force = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Write over FILE.msh.")] = False,
 ) -> None:
@@ -71,7 +71,7 @@ def mesh(
     One tooth sector of each gear, in contact at the pitch point, with named groups.
     """
     with reported():
-        loaded = loaded_scene(scene, level, settings, no_skip)
+        loaded = loaded_scene(scene, level, settings, exact)
         _require_new(out, ".msh", overwrite)
         require_room(loaded, "mesh", force)
         from evolvent.gears.meshing.levelled_meshes import is_two_level
@@ -87,7 +87,7 @@ def mesh(
         counts = f"{len(made.cells):,} cells, {len(made.points):,} nodes"
         typer.echo(f"{out}: {counts}, smallest scaled Jacobian {quality:.2g}")
         if is_two_level(problem):
-            typer.echo("The flanks of a run have finer levels: --no-skip two-level writes one fine mesh a sector")
+            typer.echo("The flanks of a run have finer levels: --exact two-level writes one fine mesh a sector")
         if quality < WORST_CELL:
             typer.echo(f"Warning: {bad_cells(quality)}", err=True)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import os
 import re
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -29,6 +30,15 @@ WITHOUT_RESUME = {
     "study": "the same command goes on with the scenes that are missing", "strength": ANEW, "fatigue": ANEW,
 }
 """Command without --resume -> what it does with earlier results."""
+RENAMED = {"--no-skip": "--exact"}
+"""Old name of an option -> its present name."""
+
+
+def with_new_names(arguments: Sequence[str], warn: Callable[[Sequence[str]], None]) -> list[str]:
+    """The command line with the present names of its options. warn: is given a sentence on each old one."""
+    names = [argument.partition("=")[0] for argument in arguments]
+    warn([f"{name} is the old name of {RENAMED[name]}." for name in dict.fromkeys(names) if name in RENAMED])
+    return [RENAMED.get(name, name) + each.removeprefix(name) for name, each in zip(names, arguments)]
 
 
 def usage_message(error: Any) -> str:
@@ -140,12 +150,12 @@ Overrides = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Override a key of the scene; may be repeated."),
 ]
-NoSkip = Annotated[
+ExactParts = Annotated[
     list[str] | None,
     typer.Option(
-        "--no-skip",
+        "--exact",
         metavar="NAME",
-        help=f"Compute the long way what is skipped; may be repeated. Names: {', '.join(SKIP_NAMES)}.",
+        help=f"Compute this part without its simplification; may be repeated. Names: {', '.join(SKIP_NAMES)}.",
     ),
 ]
 

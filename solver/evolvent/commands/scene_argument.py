@@ -21,30 +21,32 @@ def loaded_scene(
     path: Path,
     level: str | None,
     settings: Sequence[str] | None,
-    no_skip: Sequence[str] | None,
+    exact: Sequence[str] | None,
     comm: MPI.Comm | None = None,
     warns: bool = True,
 ) -> Scene:
     """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks.
 
-    comm: the ranks that take part; None: this process alone, without MPI. warns: print a warning on each key that has
-    no effect.
+    exact: names of --exact. comm: the ranks that take part; None: this process alone, without MPI. warns: print a
+    warning on each key that has no effect. Old names are warned of in any case.
     """
     from evolvent.scene.scene import load_scene
     from evolvent.scene.schema.dependence import effectless_keys
 
     result: Scene | SceneError | None = None
+    old: list[str] = []
     if comm is None or comm.rank == 0:
         try:
             overrides = with_level(settings, level)
-            overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
-            result = load_scene(path, overrides)
+            overrides += [f"exact.parts={json.dumps(exact)}"] if exact else []
+            result = load_scene(path, overrides, old.append)
         except SceneError as error:
             result = SceneError(error.problems, error.source)  # causes and tracebacks may not be fit to be sent
     result = result if comm is None else comm.bcast(result)
     assert result is not None
     if isinstance(result, SceneError):
         raise result
+    warn(old)
     if warns and (comm is None or comm.rank == 0):
         warn(effectless_keys(result))
     return result

@@ -12,7 +12,7 @@ import typer
 from evolvent.commands.command import Command
 from evolvent.commands.exit import STATUSES, reported
 from evolvent.commands.options import Force, LevelOption, Overrides, Quiet, given_count, given_path
-from evolvent.commands.scene_argument import require, with_level
+from evolvent.commands.scene_argument import require, warn, with_level
 from evolvent.fem.parallel.mpi_start import world
 
 MOST_PER_CORE = 4
@@ -74,9 +74,11 @@ def study(
         from evolvent.run.study.study_run import Study, run_study
         from evolvent.run.study.task_groups import SceneWorkers
 
-        loaded = load_study(file)
+        old: list[str] = []
+        loaded = load_study(file, old.append)
         figures, overrides = gathered_figures(loaded, str(file)), with_level(settings, level)
-        planned = Study(loaded, study_scenes(loaded, file, overrides, versions()["evolvent"]), figures)
+        planned = Study(loaded, study_scenes(loaded, file, overrides, versions()["evolvent"], old.append), figures)
+        warn(old)
         at_once = min(workers or 1, len(planned.scenes))
 
         def computing() -> AbstractContextManager[SceneWorkers]:

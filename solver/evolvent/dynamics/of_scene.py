@@ -76,7 +76,7 @@ def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
     backlash = geometric_backlash(pair) if section.backlash_um is None else 1e-3 * section.backlash_um
     series = math.inf if section.series_stiffness_N_per_um is None else 1e3 * section.series_stiffness_N_per_um
     return DriveSettings(
-        moments_of_inertia(pair, section), section.damping_ratio, backlash, section.damped_apart,
+        moments_of_inertia(pair, section), section.damping_ratio, backlash, section.damping_in_separation,
         section.ground_damping_ratio, series, section.mesh,
     )
 
@@ -91,4 +91,4 @@ def operating_point(scene: Scene) -> OperatingPoint | None:
     shares = tuple(sorted(percent / 100.0 for percent in section.torque_percents))
     settings = drive_settings(scene.gear_pair(), section)
     of_several: Literal["mean", "largest"] = "largest" if scene.wear is None else "mean"
-    return OperatingPoint(settings, section.operating_rpm, section.coming, shares, scene.sweep.positions, of_several)
+    return OperatingPoint(settings, section.operating_rpm, section.direction, shares, scene.sweep.positions, of_several)

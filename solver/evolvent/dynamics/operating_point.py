@@ -136,7 +136,7 @@ class OperatingPoint:
     """Inertia, damping, backlash, and the model of the mesh."""
     speed: float
     """Speed of the pinion [r/min]."""
-    coming: Literal["up", "down"]
+    direction: Literal["up", "down"]
     """Direction of approach to the speed, from lower or from higher ones, where the motion depends on it."""
     shares: tuple[float, ...]
     """Torques of the force surface over the pair's, ascending; 1 among them."""
@@ -220,8 +220,8 @@ class OperatingPoint:
     def _arrived(self, pair: Drive, period: float) -> Motion:
         """Motion of a pair that has run up, or down, to the speed. One that is slower, or faster, than where it would
         come from settles from rest."""
-        other = (SLOWEST if self.coming == "up" else FASTEST) * pair.natural_speed
-        if (self.speed <= other) == (self.coming == "up"):
+        other = (SLOWEST if self.direction == "up" else FASTEST) * pair.natural_speed
+        if (self.speed <= other) == (self.direction == "up"):
             return settled(pair.model, period, static_state(pair.model))
         periods = speeds_to_periods(np.linspace(other, self.speed, RUN_SPEEDS), pair.teeth)
         motion: Motion = settled(pair.model, float(periods[0]), static_state(pair.model))

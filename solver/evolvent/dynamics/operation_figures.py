@@ -64,7 +64,7 @@ class OperationFigures:
             static_peak_to_peak_um=UM * float(np.ptp(excitation.loaded.errors[:, number])),
             equivalent_amplitude_um=UM * found.equivalent_amplitude, static_force_N=pair.model.load,
             largest_force_N=found.largest_force, heaviest_torque_share=operation.heaviest_torque_share,
-            smallest_force_N=found.smallest_force, separated_share=found.apart, lifted_share=operation.lifted,
+            smallest_force_N=found.smallest_force, separated_share=found.separated_share, lifted_share=operation.lifted,
             repeats=operation.repeats,
         )
 

@@ -50,7 +50,7 @@ class DriveSettings:
     backlash: float
     """Backlash along the line of action, from flank to flank [mm]. Where straight lines between both sides' errors
     leave room and splines through them do not, the overlap of the splines is added."""
-    damped_apart: bool = False
+    damping_in_separation: bool = False
     """Whether the damping of the mesh acts on separated flanks, too."""
     ground_damping_ratio: float = 0.0
     """Damping ratio of the shafts against the ground, over the critical damping at the mean stiffness."""
@@ -135,7 +135,7 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
     critical = 2.0 * math.sqrt(moving * body.mass)
     model = TorsionalModel(
         body.mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
-        settings.damped_apart, settings.ground_damping_ratio * critical, body.stiffer * load, body.bore,
+        settings.damping_in_separation, settings.ground_damping_ratio * critical, body.stiffer * load, body.bore,
         teeth=pair.pinion.z,
     )
     rigid = equivalent_mass(pair, settings.inertias)

@@ -1,7 +1,8 @@
 """Kinematics of a gear pair: the rotating frames of both gears, and the nominal slip of their flanks.
 
-The pinion turns by θ_1 = φ − ψ_1 + extra, the wheel by θ_2 = π − ψ_2 − φ z_1/z_2 + extra, ψ the half angle of the tooth
-on the working pitch circle, so that φ = 0 puts the flanks of tooth pair 0 at the pitch point in the mid-face section.
+The pinion turns by θ_1 = φ − ψ_1 + ε_1, the wheel by θ_2 = π − ψ_2 − φ z_1/z_2 + ε_2. ψ is the half angle of the tooth
+on the working pitch circle, so that φ = 0 puts the flanks of tooth pair 0 at the pitch point in the mid-face section; ε
+is the rotation beyond the nominal one.
 """
 
 from __future__ import annotations
@@ -23,14 +24,14 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class Stand:
+class PairRotation:
     """Angular position of both gears."""
 
     pair: GearPair
     """The gears' geometry."""
     angle: float
     """Nominal pinion rotation φ [rad]."""
-    extra: tuple[float, float] = (0.0, 0.0)
+    beyond_nominal: tuple[float, float] = (0.0, 0.0)
     """Rotations of pinion and wheel beyond the nominal ones, about +z [rad]; finite, not linearised."""
 
     @property
@@ -39,21 +40,21 @@ class Stand:
         pinion, wheel = self.pair.gears
         d1, d2 = self.pair.working_pitch_diameters
         return (
-            self.angle - pinion.half_angle(d1) + self.extra[0],
-            np.pi - wheel.half_angle(d2) - self.angle / self.pair.ratio + self.extra[1],
+            self.angle - pinion.half_angle(d1) + self.beyond_nominal[0],
+            np.pi - wheel.half_angle(d2) - self.angle / self.pair.ratio + self.beyond_nominal[1],
         )
 
-    def turned(self, gear: Member, δ: float) -> Stand:
-        """Angular position with δ [rad] added to the extra rotation of a gear."""
-        extra = list(self.extra)
-        extra[gear] += δ
-        return replace(self, extra=(extra[0], extra[1]))
+    def turned(self, gear: Member, δ: float) -> PairRotation:
+        """Angular position with δ [rad] added to the rotation of a gear."""
+        ε = list(self.beyond_nominal)
+        ε[gear] += δ
+        return replace(self, beyond_nominal=(ε[0], ε[1]))
 
     @property
     def transmission_error(self) -> float:
         """Transmission error r_b1 φ_1 − r_b2 φ_2 [mm]."""
         pinion, wheel = self.pair.gears
-        return float(pinion.base_radius * self.extra[0] + wheel.base_radius * self.extra[1])
+        return float(pinion.base_radius * self.beyond_nominal[0] + wheel.base_radius * self.beyond_nominal[1])
 
     def centre(self, gear: Member, d: int) -> Floats:
         """Centre (d,) of a gear [mm]; that of a misaligned wheel lies beside mid-face, see `misalignment_shift`."""

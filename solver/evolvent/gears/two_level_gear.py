@@ -16,9 +16,9 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, unmodified
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
-from evolvent.gears.two_level.flank_refinement import FlankRefinement, RefinedFlank, towers_of
+from evolvent.gears.two_level.flank_refinement import FlankRefinement, RefinedFlank, patches_of_levels
+from evolvent.gears.two_level.level_patches import Block, BlockResponse, LevelPatches, LoadedPatch
 from evolvent.gears.two_level.refined_level import RefinedLevel
-from evolvent.gears.two_level.towers import Block, BlockResponse, LoadedPatch, Towers
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
@@ -41,14 +41,14 @@ class TimedResponse:
 class FlankPatches:
     """The patches that a gear's flank needs, and the levels from their responses.
 
-    counts: after how many levels contact is computed; see `towers_of`.
-    towers: of each level, from the coarsest to the finest.
-    patches: of each level.
+    counts: after how many levels contact is computed; see `patches_of_levels`.
+    levels: patches of each level, from the coarsest to the finest.
+    patches: the same, level by level, as they are condensed.
     flux_safety: factor on the stabilisation of Nitsche's method, of the pinion, which has the pressure side; else None.
     """
 
     counts: tuple[int, ...]
-    towers: tuple[Towers, ...]
+    levels: tuple[LevelPatches, ...]
     patches: tuple[tuple[LoadedPatch, ...], ...]
     flux_safety: float | None
 
@@ -58,9 +58,9 @@ class FlankPatches:
     ) -> FlankPatches:
         """Patches of the pinion's or the wheel's flank. safety: factor on the stabilisation of Nitsche's method."""
         flux_safety = safety if member is Member.PINION else None
-        towers = towers_of(_refinement(problem, member, sector), counts, flux_safety)
-        patches = tuple(tuple(each.patches()) for each in towers)
-        return FlankPatches(tuple(counts), tuple(towers), patches, flux_safety)
+        levels = patches_of_levels(_refinement(problem, member, sector), counts, flux_safety)
+        patches = tuple(tuple(each.patches()) for each in levels)
+        return FlankPatches(tuple(counts), tuple(levels), patches, flux_safety)
 
     def named(self) -> dict[PatchName, LoadedPatch]:
         """All patches by name."""
@@ -70,16 +70,16 @@ class FlankPatches:
     def response(self, name: PatchName) -> TimedResponse:
         """Condenses a patch. Raises NotPositiveDefinite, OutOfMemory."""
         begin = time.perf_counter()
-        response = self.towers[name[0]].response(self.named()[name])
+        response = self.levels[name[0]].response(self.named()[name])
         return TimedResponse(response, time.perf_counter() - begin)
 
     def refined(self, responses: Mapping[PatchName, TimedResponse]) -> dict[int, list[RefinedLevel]]:
         """The levels, for each of the counts. responses: of all patches."""
         by_level = [
             {block: each.response for (level, block), each in responses.items() if level == number}
-            for number in range(len(self.towers))
+            for number in range(len(self.levels))
         ]
-        return RefinedFlank(self.towers, by_level).levels(self.counts)
+        return RefinedFlank(self.levels, by_level).levels(self.counts)
 
 
 def two_level_gear(
@@ -114,7 +114,7 @@ def corrected_gears(
     assert isinstance(coarse.chain, ChainedCompliance)
     bodies = {}
     for count, levels in refined.items():
-        fine = flank.towers[count - 1].surface
+        fine = flank.levels[count - 1].surface
         traction = None if safety is None else nitsche_traction(fine.mesh, coarse.material, fine.surface, safety)
         ring = TwoLevelRing(coarse.chain, coarse.flank, levels, pitch)
         bodies[count] = replace(

@@ -13,7 +13,7 @@ from evolvent.fem.parallel.ranks import together
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.two_level.towers import COST
+from evolvent.gears.two_level.level_patches import COST
 from evolvent.gears.two_level_gear import FlankPatches, PatchName, TimedResponse, coarse_gear, corrected_gears
 from evolvent_meshes.gears.member import Member
 

@@ -18,7 +18,7 @@ from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, requested_error_bars
 from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.store import ArchiveError
-from evolvent.scene.scene import Scene, load_scene
+from evolvent.scene.scene import Scene, kept_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
@@ -146,7 +146,7 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
 
 def read_run(folder: Path) -> RunData:
     """The run in the folder OUT, from OUT/scene.toml and OUT/results. Raises SceneError, ArchiveError."""
-    scene = load_scene(folder / "scene.toml")
+    scene = kept_scene(folder / "scene.toml")
     archive = Archive(folder, scene)
     run = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
     return replace(run, errors=requested_error_bars(archive) or run.errors)

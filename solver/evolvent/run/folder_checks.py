@@ -13,7 +13,7 @@ from evolvent.results.archive.run_folder import LOG, FolderError, RunFolder
 from evolvent.results.archive.scene_files import SCENE_FILES, scene_texts
 from evolvent.run.call import Options
 from evolvent.run.computation import Computation
-from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.scene import GEARS, Scene, kept_scene
 
 COMMON = (str(LOG), *SCENE_FILES, str(COST))
 """Files that every computation writes."""
@@ -94,7 +94,9 @@ def _keep_sources(scene: Scene, folder: RunFolder, source: Path | None) -> None:
     """Raises FolderError where the run would change a file that the scene is read from."""
     charts = [getattr(scene, name).flank_csv for name in GEARS]
     sources = [path for path in (source, *(Path(chart) for chart in charts if chart)) if path is not None]
-    texts = scene_texts(scene)
+    texts, kept = scene_texts(scene), folder.out / "scene.toml"
+    if kept in sources and folder.is_written(kept) and scene_texts(kept_scene(kept)) == texts:
+        return  # this scene as a run has written it, perhaps with the names of an earlier version
     for name in SCENE_FILES:
         path = folder.out / name
         same = [source for source in sources if path.exists() and source.exists() and os.path.samefile(path, source)]

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.scene import GEARS, Scene, derived_values
 from evolvent.scene.schema.errors import shown
-from evolvent.scene.schema.output import OutputSection, SkipSection
+from evolvent.scene.schema.old_names import first_names
+from evolvent.scene.schema.output import ExactSection, OutputSection
 from evolvent.scene.skips import OF_OUTPUT, with_deflected_flanks
 
 MOST = 3
@@ -17,9 +18,16 @@ NOT_GIVEN = "not given"
 
 def essence(scene: Scene) -> Scene:
     """The scene without the parts that its results do not depend on: title, output and the paths of flank charts."""
-    ways = SkipSection(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
+    exact = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in OF_OUTPUT))
     bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
-    return scene.model_copy(update={"title": "", "output": OutputSection(), "skip": ways, **bare})
+    return scene.model_copy(update={"title": "", "output": OutputSection(), "exact": exact, **bare})
+
+
+def identity(scene: Scene) -> list[Any]:
+    """All that the results of a scene depend on, as JSON has it: its values, those derived from them, and its flank
+    charts. Keys have their first names, so that it is the same in all versions."""
+    bare = essence(scene)
+    return [first_names(bare.model_dump(mode="json")), derived_values(bare), *charts(scene)]
 
 
 def charts(scene: Scene) -> list[str]:

@@ -24,8 +24,8 @@ def gear_problem(scene: Scene) -> GearProblem:
 
 
 def gear_options(scene: Scene) -> GearOptions:
-    """Options for parts that the scene wants computed in full, as skip.off names them."""
-    off = set(scene.skip.off)
+    """Options for parts that the scene wants computed in full, as exact.parts names them."""
+    off = set(scene.exact.parts)
     return GearOptions(
         in_space="plane" in off,
         friction_terms="friction-terms" in off,
@@ -41,9 +41,9 @@ def gear_options(scene: Scene) -> GearOptions:
 def two_levels(scene: Scene) -> bool | None:
     """Whether flanks have levels of their own; None where the size of the mesh decides. Wear is followed on the nodes
     of one fine mesh."""
-    return None if scene.wear is None and "two-level" not in scene.skip.off else False
+    return None if scene.wear is None and "two-level" not in scene.exact.parts else False
 
 
 def shares_gears(scene: Scene) -> bool:
     """Whether condensed gears serve all friction coefficients; else each has gears of its own."""
-    return len(scene.contact.friction) == 1 or "reuse" not in scene.skip.off
+    return len(scene.contact.friction) == 1 or "reuse" not in scene.exact.parts

@@ -5,14 +5,14 @@ Everything that is wrong with a scene is reported in one `SceneError` before any
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
 
-from pydantic import BaseModel, ValidationError, model_validator
+from pydantic import ValidationError, model_validator
 
+from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.fem.material import Material
 from evolvent.gears.problem.flank_deviations import DEEPEST, FlankChart
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
@@ -23,20 +23,22 @@ from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
 from evolvent.scene.schema.dependence import without_main_key
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
-from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, section_of, shown, validation_error
+from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, shown, validation_error
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.schema.gears import GearSection, PairSection
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
-from evolvent.scene.schema.output import OutputSection, SkipSection
+from evolvent.scene.schema.old_names import Warn, new_sections, unsaid
+from evolvent.scene.schema.output import ExactSection, OutputSection
 from evolvent.scene.schema.section import SceneSection, key
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.schema.wear import WearSection
+from evolvent.scene.toml_lines import toml_lines
 from evolvent.scene.vibration_limits import PlannedVibration, impossible
 from evolvent_meshes.csv_tables import TableError
 from evolvent_meshes.gears.member import MemberName
 from evolvent_meshes.gears.pair import GearPair
 
-__all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
+__all__ = ["Scene", "SceneError", "kept_scene", "load_scene", "scene_from_text", "scene_from_values"]
 
 GEARS: tuple[MemberName, MemberName] = ("pinion", "wheel")
 
@@ -65,7 +67,7 @@ class Scene(SceneSection):
     strength: StrengthSection | None = None
     fatigue: FatigueSection | None = None
     output: OutputSection = OutputSection()
-    skip: SkipSection = SkipSection()
+    exact: ExactSection = ExactSection()
 
     @model_validator(mode="after")
     def _keys_have_an_effect(self) -> Self:
@@ -161,9 +163,9 @@ class Scene(SceneSection):
             raise validation_error(InputProblem("contact.friction", found, allowed, remedy))
         needed = ("one-pitch", "one pitch is one tooth's passage"), ("deflected-flanks", "they wear undeflected")
         for name, why in needed:
-            if self.wear is not None and name in self.skip.off:
-                allowed = f"the other skips where the flanks wear: {why}"
-                raise validation_error(InputProblem("skip.off", shown(self.skip.off), allowed, f"leave {name} out"))
+            if self.wear is not None and name in self.exact.parts:
+                found, allowed = shown(self.exact.parts), f"the other parts where the flanks wear: {why}"
+                raise validation_error(InputProblem("exact.parts", found, allowed, f"leave {name} out"))
         return self
 
     def flank_chart(self, name: MemberName) -> FlankChart | None:
@@ -207,7 +209,7 @@ class Scene(SceneSection):
 
         A default that is derived from other keys is a comment, so that it is derived again when these are changed.
         """
-        return "\n".join(_toml_lines(self, derived_values(self))) + "\n"
+        return "\n".join(toml_lines(self, derived_values(self))) + "\n"
 
 
 def derived_values(scene: Scene) -> dict[str, Any]:
@@ -231,55 +233,28 @@ def derived_values(scene: Scene) -> dict[str, Any]:
     return values
 
 
-def _toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "") -> Iterator[str]:
-    """The lines of a section: its keys, then its subsections."""
-    if name:
-        yield f"\n[{name}]"
-    subsections = []
-    for key_name, field in type(section).model_fields.items():
-        value, dotted = getattr(section, key_name), f"{name}.{key_name}" if name else key_name
-        if optional := section_of(field):
-            subsections.append((dotted, value if value is not None else optional))
-        elif value is not None:
-            yield f"{key_name} = {_toml_value(value)}  # {field.description}"
-        elif dotted in derived:
-            yield f"# {key_name} = {_toml_value(derived[dotted])}  # {field.description}"
-        else:
-            yield f"# {key_name}: not given  # {field.description}"
-    for subname, value in subsections:
-        yield from _toml_lines(value, derived, subname) if isinstance(value, BaseModel) else _not_given(value, subname)
+def future_warning(sentence: str) -> None:
+    """Warns at the user's line of what a later version may not accept."""
+    warn_user(sentence, FutureWarning)
 
 
-def _not_given(section: type[BaseModel], name: str) -> Iterator[str]:
-    """The lines of an optional section that the scene does not have."""
-    yield f"\n# [{name}]: not given"
-    for key_name, field in section.model_fields.items():
-        if inner := section_of(field):
-            yield from _not_given(inner, f"{name}.{key_name}")
-        else:
-            yield f"# {key_name}: not given  # {field.description}"
-
-
-def _toml_value(value: object) -> str:
-    """A text, number, truth value or tuple of them as TOML, which has the same escape sequences as JSON."""
-    if isinstance(value, tuple):
-        return "[" + ", ".join(map(_toml_value, value)) + "]"
-    if isinstance(value, (str, bool)):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    return repr(value)
-
-
-def load_scene(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
+def load_scene(path: Path | str, overrides: Sequence[str] = (), warn: Warn = future_warning) -> Scene:
     """Reads, overrides and validates a scene file.
 
-    overrides: "section.key=value" with a TOML value, as `--set` takes them. Raises SceneError.
+    overrides: "section.key=value" with a TOML value, as `--set` takes them. warn: is given a sentence on each old name
+    of a key or value. Raises SceneError.
     """
     path = Path(path)
-    return scene_from_text(scene_text(path), overrides, str(path), path.parent)
+    return scene_from_text(scene_text(path), overrides, str(path), path.parent, warn)
+
+
+def kept_scene(path: Path) -> Scene:
+    """The scene that a run has written, by whatever names its version had. Raises SceneError."""
+    return load_scene(path, warn=unsaid)
 
 
 def scene_from_text(
-    text: str, overrides: Sequence[str] = (), source: str = "", folder: Path = Path()
+    text: str, overrides: Sequence[str] = (), source: str = "", folder: Path = Path(), warn: Warn = future_warning
 ) -> Scene:
     """A scene from TOML text; see load_scene.
 
@@ -287,14 +262,14 @@ def scene_from_text(
     current folder.
     """
     try:
-        return scene_from_values(nested_values(text, overrides, folder))
+        return scene_from_values(nested_values(text, overrides, folder, warn))
     except SceneError as error:
         raise SceneError(error.problems, source) from error.__cause__
 
 
-def scene_from_values(values: Mapping[str, Any]) -> Scene:
+def scene_from_values(values: Mapping[str, Any], warn: Warn = future_warning) -> Scene:
     """A scene from nested dictionaries; see load_scene."""
     try:
-        return Scene.model_validate(dict(values))
+        return Scene.model_validate(new_sections(values, warn))
     except ValidationError as error:
         raise SceneError(problems_of(error, Scene)) from error

@@ -11,6 +11,7 @@ from typing import Any
 
 from evolvent.scene.schema.errors import LONGEST_TEXT, InputProblem, SceneError, dotted_part, shown
 from evolvent.scene.schema.guesses.meant_toml import value_written_otherwise, written_otherwise
+from evolvent.scene.schema.old_names import Warn, new_names, new_sections
 from evolvent_meshes.text_files import UnreadableText, read_text
 
 
@@ -49,19 +50,19 @@ def scene_text(path: Path, kind: FileKind = SCENE) -> str:
         raise SceneError([InputProblem(kind.name, error.found, error.allowed, remedy)], str(path)) from error
 
 
-def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str, Any]:
+def nested_values(text: str, overrides: Sequence[str], folder: Path, warn: Warn) -> dict[str, Any]:
     """Sections and keys of a scene as nested dictionaries.
 
     overrides: "section.key=value", as `--set` takes them. folder: to which paths in `text` are relative; paths in
-    overrides are relative to the current folder. Raises SceneError.
+    overrides are relative to the current folder. warn: is given a sentence on each old name. Raises SceneError.
     """
     values = toml_values(text)
     require_kind(values, SCENE)
+    values = new_sections(values, warn)
     for section in (values.get("pinion"), values.get("wheel")):
         if isinstance(section, dict) and isinstance(section.get("flank_csv"), str):
             section["flank_csv"] = str(folder / section["flank_csv"]) if section["flank_csv"] else ""
-    for override in overrides:
-        apply_override(values, override)
+    apply_overrides(values, overrides, warn)
     require_shallow(values)
     return values
 
@@ -139,8 +140,15 @@ def require_shallow(values: dict[str, Any]) -> None:
         waiting += [(name, each, depth + 1) for each in inner if isinstance(each, (dict, list))]
 
 
-def apply_override(values: dict[str, Any], override: str) -> None:
-    """Sets one "section.key=value" in the nested values. Raises SceneError."""
+def apply_overrides(values: dict[str, Any], overrides: Sequence[str], warn: Warn) -> None:
+    """Sets each "section.key=value" in the nested values, the last one of a key. warn: is given a sentence on each old
+    name. Raises SceneError."""
+    for name, value in new_names(dict(map(_override, overrides)), warn).items():
+        _put(values, name, value)
+
+
+def _override(override: str) -> tuple[str, Any]:
+    """Dotted key and value of one override. Raises SceneError."""
     name, equals, text = override.partition("=")
     names = [part.strip() for part in name.split(".")]
     if not name.isprintable():  # bytes that are no UTF-8, control characters
@@ -149,14 +157,19 @@ def apply_override(values: dict[str, Any], override: str) -> None:
     if not equals or not all(names) or len(names) > DEEPEST:
         remedy = "write for example --set load.torque_Nm=300"
         raise SceneError([InputProblem("--set", shown(override), "section.key=value", remedy)])
-    table = values
+    return ".".join(names), _parsed(name, text.strip())
+
+
+def _put(values: dict[str, Any], name: str, value: Any) -> None:
+    """Sets a dotted key in the nested values. Raises SceneError where it lies below a value."""
+    table, names = values, name.split(".")
     for depth, part in enumerate(names[:-1]):
         inner = table.setdefault(part, {})
         if not isinstance(inner, dict):
             found = f"a key below {'.'.join(names[: depth + 1])}, which has the value {shown(inner)}"
             raise SceneError([InputProblem(name, found, "section.key=value", "see docs/scene.md for the keys")])
         table = inner
-    table[names[-1]] = _parsed(name, text.strip())
+    table[names[-1]] = value
 
 
 def _parsed(name: str, text: str) -> Any:

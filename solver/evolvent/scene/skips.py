@@ -1,8 +1,8 @@
 """Parts of the computation that a scene does not need: a registry of skips, each with name, sentence and tolerance.
 
-A skip is automatic where it applies. `--no-skip NAME` (the key skip.off) computes what it leaves out the long way; the
-answer stays the same within the skip's tolerance. The registry is for what `check`, the log and summary.json say; code
-that computes is given options (gear_problem.py, `wanted_output`).
+A skip is automatic where it applies. `--exact NAME` (the key exact.parts) computes the part without it; the answer
+stays the same within the skip's tolerance. The registry is for what `check`, the log and summary.json say; code that
+computes is given options (gear_problem.py, `wanted_output`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from evolvent.gears.meshing.levelled_meshes import LONGEST, has_long_cells, is_l
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.output import OutputSection, SkipName, SkipSection
+from evolvent.scene.schema.output import ExactSection, OutputSection, SkipName
 
 ROUND_OFF = 1e-8
 """Tolerance where only the order of sums and the remainder of Newton's method (residual 1e-10) differ."""
@@ -92,7 +92,7 @@ def one_mesh_reason(scene: Scene) -> str:
     """A sentence on a large mesh whose flanks have no levels of their own although the scene leaves that open; else
     empty."""
     problem = gear_problem(scene)
-    if "two-level" in scene.skip.off or problem.is_plane or not is_large(problem):
+    if "two-level" in scene.exact.parts or problem.is_plane or not is_large(problem):
         return ""
     if scene.wear is not None:
         return "Flanks that wear have no levels of their own (two-level): each sector is one fine mesh."
@@ -207,7 +207,7 @@ def skip_named(name: SkipName) -> Skip:
 
 def skips(scene: Scene, name: SkipName) -> bool:
     """Whether a skip is made: it applies and is not switched off."""
-    return name not in scene.skip.off and skip_named(name).applies(scene)
+    return name not in scene.exact.parts and skip_named(name).applies(scene)
 
 
 def skipped(scene: Scene) -> list[Skipped]:
@@ -217,7 +217,7 @@ def skipped(scene: Scene) -> list[Skipped]:
 
 def switched_off(scene: Scene) -> list[SkipName]:
     """The skips that apply but are switched off."""
-    return [skip.name for skip in SKIPS if skip.name in scene.skip.off and skip.applies(scene)]
+    return [skip.name for skip in SKIPS if skip.name in scene.exact.parts and skip.applies(scene)]
 
 
 def with_deflected_flanks(scene: Scene) -> Scene:
@@ -225,19 +225,18 @@ def with_deflected_flanks(scene: Scene) -> Scene:
     them already or where they do not apply."""
     if not skips(scene, "deflected-flanks"):
         return scene
-    off = SkipSection(off=(*scene.skip.off, "deflected-flanks"))
-    return scene.model_copy(update={"skip": off})
+    exact = ExactSection(parts=(*scene.exact.parts, "deflected-flanks"))
+    return scene.model_copy(update={"exact": exact})
 
 
 def wanted_output(scene: Scene) -> OutputSection:
-    """Section [output] with all that skip.off adds: pictures, animation, fields and error bars."""
-    off = scene.skip.off
-    asked = scene.output
-    drawn = "pictures" in off
+    """Section [output] with all that exact.parts adds: pictures, animation, fields and error bars."""
+    exact, asked = scene.exact.parts, scene.output
+    drawn = "pictures" in exact
     return OutputSection(
         pictures=asked.pictures or drawn,
         animation=asked.animation or drawn,
-        fields=asked.fields or "fields" in off,
-        error_bars=asked.error_bars or "error-bars" in off,
+        fields=asked.fields or "fields" in exact,
+        error_bars=asked.error_bars or "error-bars" in exact,
         deformation=asked.deformation,
     )

@@ -17,7 +17,7 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, sweep_pitch
-from evolvent.results.error_bars.peak_bounds import beside_largest
+from evolvent.results.error_bars.peak_bounds import peak_bounds
 from evolvent.strength.root_passage import GearRoots, root_passages
 
 GAIN = 0.005
@@ -100,9 +100,9 @@ def _further(model: GearModel, known: SweptRoots) -> list[float]:
     for own in (gear for both in known.roots for gear in both):
         loaded, back = own.loaded_side, own.back_side
         for angles, stress in ((loaded.angles, loaded.largest), (back.angles, -back.smallest)):
-            for peak in beside_largest(angles, stress):
+            for peak in peak_bounds(angles, stress):
                 if peak.width > NARROWEST * pitch and peak.height > (1.0 + GAIN) * stress.max():
-                    wanted.append(peak.place % pitch)
+                    wanted.append(peak.angle % pitch)
     apart: list[float] = []
     for angle in sorted(wanted):
         if not apart or angle - apart[-1] > NARROWEST * pitch:

@@ -30,7 +30,7 @@ from tests.support.running.processes import RunScript
 MEBIBYTE = 1.048576
 
 
-ONE_MESH = 'skip.off=["two-level"]'
+ONE_MESH = 'exact.parts=["two-level"]'
 SHORT = "contact.friction=0.1", "sweep.positions=3"
 QUICK = "mesh.level=quick", "contact.friction=0.11", ONE_MESH
 
@@ -47,7 +47,7 @@ def yang(*settings: str) -> Scene:
 def test_sector_size_is_that_of_the_mesh(make: Callable[..., Scene], shape: str, order: int, long_way: bool) -> None:
     """Exact: the nodes of the mesh, of its loaded flank and of its two cut faces, times the dimension; plane and in
     space, both orders and shapes, with a coarse back flank and with one as fine as the loaded one."""
-    off = ['skip.off=["coarse-body"]'] if long_way else []
+    off = ['exact.parts=["coarse-body"]'] if long_way else []
     scene = make(f"mesh.order={order}", f"mesh.shape={shape}", "mesh.elements_per_contact_width=0.5", *off)
     for member, found in zip(Member, sector_sizes(scene)):
         mesh = gear_mesh(gear_problem(scene), member)
@@ -73,8 +73,8 @@ MEASURED = [
     (yang("mesh.level=fine", *SHORT, "output.error_bars=false"), 3050),
     *((yang(*QUICK, f"mesh.elements_per_contact_width={elements}"), megabytes)
       for elements, megabytes in ((1, 1127), (1.4, 2255), (2, 3844), (2.6, 8420), (3.2, 17063), (3.5, 22401))),
-    (yang("mesh.level=quick", "skip.off=coarse-body"), 6481),
-    (spur_scene("mesh.level=quick", "skip.off=plane"), 1917),
+    (yang("mesh.level=quick", "exact.parts=coarse-body"), 6481),
+    (spur_scene("mesh.level=quick", "exact.parts=plane"), 1917),
 ]
 
 
@@ -88,7 +88,7 @@ def test_memory_estimate_of_small_runs() -> None:
     """A plane run took 157 MB, with whole gears 630: told within a factor of two, so that small machines are let."""
     quick = spur_scene("mesh.level=quick")
     assert 150 < memory_megabytes(quick) < 330
-    assert 600 < memory_megabytes(spur_scene("mesh.level=quick", "skip.off=one-sector")) < 1300
+    assert 600 < memory_megabytes(spur_scene("mesh.level=quick", "exact.parts=one-sector")) < 1300
 
 
 def test_memory_estimate_of_several_ranks() -> None:
@@ -125,8 +125,11 @@ TETRAHEDRA, ELEMENTS = "mesh.shape=tetrahedron", "mesh.elements_per_contact_widt
         ([TETRAHEDRA, "mesh.level=standard"], 2e3, "mesh.level", "quick --set mesh.elements_per_contact_width=1.3"),
         ([TETRAHEDRA, "mesh.elements_per_contact_width=12"], 25e3, ELEMENTS, "per_contact_width=3."),
         (["mesh.level=fine"], 3e3, "mesh.level", "take --level standard ("),
-        (["mesh.level=fine", ONE_MESH], 25e3, "mesh.level", "take two-level out of skip.off (--no-skip)"),
-        (["mesh.level=quick", "skip.off=one-sector"], 8e3, "mesh.level", "take one-sector out of skip.off (--no-skip)"),
+        (["mesh.level=fine", ONE_MESH], 25e3, "mesh.level", "take two-level out of exact.parts (--exact)"),
+        (
+            ["mesh.level=quick", "exact.parts=one-sector"], 8e3, "mesh.level",
+            "take one-sector out of exact.parts (--exact)",
+        ),
         (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 3.277 N·m on --level quick does"),
     ],
 )
@@ -157,7 +160,7 @@ def test_memory_of_results_is_counted(machine: Callable[[float], None]) -> None:
     the estimate for one in 2D is no less than its arrays, and no more than 2.5 times."""
     machine(24e3)
     coefficients = [k / 100 for k in range(50)]
-    many = yang("sweep.positions=1000", f"contact.friction={coefficients}", "skip.off=one-pitch")
+    many = yang("sweep.positions=1000", f"contact.friction={coefficients}", "exact.parts=one-pitch")
     problem = room_problem(many, memory_megabytes)
     assert problem is not None and problem.key == "sweep.positions" and "200,000 results" in problem.found
     assert problem.found.endswith("in all")
@@ -258,7 +261,7 @@ HUGE = [
     ["load.torque_Nm=1e-4"],
     ["load.torque_Nm=1e-12"],
     ["load.torque_Nm=1e-300"],
-    ["load.torque_Nm=1e-6", "skip.off=one-sector", "skip.off=coarse-body"],
+    ["load.torque_Nm=1e-6", "exact.parts=one-sector", "exact.parts=coarse-body"],
     ["mesh.elements_per_contact_width=24", "load.torque_Nm=1e-5"],
     ["pinion.teeth=1000000000"],
     ["sweep.positions=1000000000000"],

@@ -29,7 +29,7 @@ def test_memory_estimate_of_measured_calls(name: str, mebibytes: float) -> None:
     assert strength_megabytes(scene) > 1.4 * memory_megabytes(scene)
 
 
-@pytest.mark.parametrize("off", [[], ["skip.off=plane"]])
+@pytest.mark.parametrize("off", [[], ["exact.parts=plane"]])
 @pytest.mark.parametrize("times", [1, 2])
 def test_size_is_that_of_the_mesh(off: list[str], times: int) -> None:
     """Exact: nodes of the sector and of both roots times the dimension, in the section and in space, with as many

@@ -34,8 +34,8 @@ def model() -> GearModel:
 
 
 @cache
-def operation(speed: float, coming: Literal["up", "down"] = "up") -> Operation:
-    point = replace(POINT, speed=speed, coming=coming)
+def operation(speed: float, direction: Literal["up", "down"] = "up") -> Operation:
+    point = replace(POINT, speed=speed, direction=direction)
     return point.on(model(), (None, None), MPI.COMM_SELF)
 
 
@@ -66,10 +66,10 @@ def test_motion_is_that_of_the_sweep_over_the_speed() -> None:
         ("up", (pair.natural_speed / 6.0, speed)),
         ("down", (speed, 1.6 * pair.natural_speed)),
     )
-    for coming, ends in ways:
-        found = operation(speed, coming)
+    for direction, ends in ways:
+        found = operation(speed, direction)
         swept = sweep_speeds(pair.model, speeds_to_periods(np.linspace(*ends, 30), pair.teeth))
-        wanted = swept.up[-1] if coming == "up" else swept.down[0]
+        wanted = swept.up[-1] if direction == "up" else swept.down[0]
         size, exact = (
             response(pair.model, found.period, state).equivalent_amplitude
             for state in (found.state, wanted.motion.state)
@@ -92,8 +92,8 @@ def test_where_flanks_part_a_least_force_is_left() -> None:
     found = operation(0.92 * operation(4000.0).drive.natural_speed, "down")
     course = found.load.course
     assert course is not None
-    assert found.paths[0].apart > 0.05
-    assert found.lifted == pytest.approx(found.paths[0].apart, abs=0.02)
+    assert found.paths[0].separated_share > 0.05
+    assert found.lifted == pytest.approx(found.paths[0].separated_share, abs=0.02)
     assert course.shares.min() == LEAST_FORCE
 
 

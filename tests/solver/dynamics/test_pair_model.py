@@ -69,7 +69,7 @@ def test_positions_may_begin_anywhere() -> None:
         swept = sweep_speeds(pair.model, speeds_to_periods(np.linspace(3000.0, 5000.0, 20), 50))
         motions = zip(swept.periods, swept.up)
         found.append([response(pair.model, float(T), run.motion.state, run.repeats or 16) for T, run in motions])
-    assert max(each.behind for each in found[0]) > 0.01
+    assert max(each.back_contact_share for each in found[0]) > 0.01
     one, other = ([each.largest_force for each in runs] for runs in found)
     assert other == pytest.approx(one, rel=1e-7)
 

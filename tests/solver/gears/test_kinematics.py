@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.gears.kinematics import Stand, nominal_slip, spin, turn
+from evolvent.gears.kinematics import PairRotation, nominal_slip, spin, turn
 from evolvent_meshes.gears.flank import Flank, action_plane_points, contact_normal, separation
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -25,7 +25,7 @@ def test_spin_is_the_derivative_of_turn() -> None:
 def test_flanks_of_a_tooth_pair_meet_on_the_line_of_action(pair: GearPair, angle: float, tooth: int) -> None:
     """Exact: both flanks' points with the curvature radii of (ξ, z), placed in space, are the point of the plane of
     action, for any tooth pair, rotation and height."""
-    stand = Stand(pair, angle)
+    stand = PairRotation(pair, angle)
     z = np.array([-3.0, 0.0, 2.0])
     ξ = stand.roll_distance(tooth, z)
     wanted = action_plane_points(pair, ξ, z)
@@ -40,7 +40,7 @@ def test_misalignment_opens_the_gap_that_the_geometry_says(misalignment: float) 
     """Exact to first order, so within 1 % of 20 µm: the normal distance of the placed flanks is `separation`, and the
     wheel turns about its tilted axis."""
     pair = yang(misalignment_um=misalignment)
-    stand, z = Stand(pair, 0.03), np.array([-8.0, -2.0, 5.0])
+    stand, z = PairRotation(pair, 0.03), np.array([-8.0, -2.0, 5.0])
     ξ = stand.roll_distance(0, z)
     points = []
     for gear, ρ in zip(Member, pair.curvature_radii(ξ)):
@@ -48,18 +48,19 @@ def test_misalignment_opens_the_gap_that_the_geometry_says(misalignment: float) 
     gap = (points[1] - points[0]) @ contact_normal(pair)
     np.testing.assert_allclose(gap, separation(pair, ξ, z), atol=2e-4)
     assert np.abs(gap).max() > 5e-3
-    turned = Stand(pair, 0.03, (0.0, 1e-6)).rotation(Member.WHEEL, 3) @ stand.rotation(Member.WHEEL, 3).T - np.eye(3)
+    further = PairRotation(pair, 0.03, (0.0, 1e-6))
+    turned = further.rotation(Member.WHEEL, 3) @ stand.rotation(Member.WHEEL, 3).T - np.eye(3)
     arm = points[1] - stand.centre(Member.WHEEL, 3)
     rate = spin(points[1], stand.centre(Member.WHEEL, 3), stand.axis(Member.WHEEL))
     np.testing.assert_allclose(rate, 1e6 * arm @ turned.T, atol=1e-3)
 
 
 def test_extra_rotations_turn_about_the_own_axis() -> None:
-    """Exact: `extra` adds to a gear's turn, and 2D is 3D without z."""
-    stand = Stand(yang(), 0.1, (0.02, -0.03))
-    for gear, extra in zip(Member, (0.02, -0.03)):
-        nominal = Stand(yang(), 0.1).rotation(gear, 3, 2)
-        np.testing.assert_allclose(stand.rotation(gear, 3, 2), turn(extra, 3) @ nominal, atol=1e-15)
+    """Exact: `beyond_nominal` adds to a gear's turn, and 2D is 3D without z."""
+    stand = PairRotation(yang(), 0.1, (0.02, -0.03))
+    for gear, ε in zip(Member, (0.02, -0.03)):
+        nominal = PairRotation(yang(), 0.1).rotation(gear, 3, 2)
+        np.testing.assert_allclose(stand.rotation(gear, 3, 2), turn(ε, 3) @ nominal, atol=1e-15)
         np.testing.assert_array_equal(stand.rotation(gear, 2, 2), stand.rotation(gear, 3, 2)[:2, :2])
 
 

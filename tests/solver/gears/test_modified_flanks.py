@@ -26,7 +26,7 @@ FACE, SLOPE, NOISE = 8.0, 5.0, 0.02
 
 @cache
 def plain() -> GearModel:
-    return model_of(helical_scene("pair.helix_angle_deg=0", 'skip.off=["plane"]'))
+    return model_of(helical_scene("pair.helix_angle_deg=0", 'exact.parts=["plane"]'))
 
 
 def modified(**of_gears: dict[str, Any]) -> GearModel:

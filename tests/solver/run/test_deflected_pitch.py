@@ -27,7 +27,7 @@ from tests.support.checkout import ROOT
 from tests.support.quiet import quietly
 
 BENT, BETWEEN = 344, 2e-3
-ASKED = "skip.off=deflected-flanks"
+ASKED = "exact.parts=deflected-flanks"
 TORQUES = 50.0, 100.0
 """Of the excitation, in percent."""
 pytestmark = pytest.mark.slow

@@ -60,7 +60,7 @@ def test_pitch_has_its_positions_in_order(call: Call) -> None:
     assert [position.closes for position in stored] == [False] * (len(stored) - 1) + [True]
     assert [each.angle for each in pitch.solved.positions] == [2.0 * np.pi / 16 / 3 * k for k in range(3)]
     last, state = stored[-1].state, pitch.archive.read_state(scene.gear_pair())
-    assert state is not None and last.extra == state.extra
+    assert state is not None and last.beyond_nominal == state.beyond_nominal
     assert last.histories[0] is not None and state.histories[0] is not None
     assert np.array_equal(last.histories[0].flux, state.histories[0].flux)
 
@@ -87,7 +87,7 @@ def test_position_out_of_balance_is_not_stored(call: Call, monkeypatch: pytest.M
 
 def test_finished_friction_groups_are_not_solved_again(call: Call, prepared: list[int]) -> None:
     """Coefficients with gears of their own, resumed at their end: no gear is condensed again."""
-    scene = scene_of("contact.friction=[0.0, 0.2]", "skip.off=reuse")
+    scene = scene_of("contact.friction=[0.0, 0.2]", "exact.parts=reuse")
     kept_pitch(call, scene)
     assert len(prepared) == 2
     again = kept_pitch(resumed(call), scene)
@@ -108,7 +108,7 @@ def test_unbalanced_pitch_is_solved_again_on_the_same_gears(
 def test_friction_coefficients_in_groups_give_the_same_pitch(tmp_path: Path, prepared: list[int]) -> None:
     """Two coefficients, each solved with gears of its own: the transmission errors of both together within 1e-8."""
     errors = []
-    for name, settings in (("together", ()), ("alone", ("skip.off=reuse",))):
+    for name, settings in (("together", ()), ("alone", ("exact.parts=reuse",))):
         scene = scene_of("contact.friction=[0.0, 0.2]", *settings)
         with temporary_call(tmp_path / name, counting(prepared)) as call:
             swept = kept_pitch(call, scene).solved.positions

@@ -119,7 +119,7 @@ def test_a_finished_run_is_resumed_without_condensing(
 def test_one_mesh_gives_the_same_within_a_hundredth(out: Path, levels: None, tmp_path: Path) -> None:
     """Transmission error and torques within 1 %; pressures on less than one element a contact width are worth
     nothing."""
-    scene = small_scene(*BARE, 'skip.off=["two-level"]')
+    scene = small_scene(*BARE, 'exact.parts=["two-level"]')
     assert gear_problem(scene).mesh.two_level is False
     quietly(Run.of(scene), tmp_path / "out")
     summary = summary_of(tmp_path / "out")

@@ -29,7 +29,7 @@ OPTIONS: dict[SkipName, str] = {
 
 
 def test_by_default_nothing_is_computed_in_full() -> None:
-    """A scene without skip.off has the default options, and gears that all coefficients share."""
+    """A scene without exact.parts has the default options, and gears that all coefficients share."""
     assert gear_options(helical_scene()) == GearOptions()
     assert not any(asdict(GearOptions()).values())
     assert shares_gears(helical_scene())
@@ -37,8 +37,8 @@ def test_by_default_nothing_is_computed_in_full() -> None:
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_a_skip_switched_off_is_one_option(name: SkipName) -> None:
-    """Problem: one name in skip.off. Exact: its option alone is set."""
-    options = asdict(gear_options(helical_scene(f'skip.off=["{name}"]')))
+    """Problem: one name in exact.parts. Exact: its option alone is set."""
+    options = asdict(gear_options(helical_scene(f'exact.parts=["{name}"]')))
     assert [key for key, value in options.items() if value] == [OPTIONS[name]]
 
 
@@ -47,14 +47,14 @@ def test_every_skip_has_an_option() -> None:
     skip."""
     assert {*OPTIONS, *OF_OUTPUT, "two-level", "reuse"} == set(get_args(SkipName))
     assert set(OPTIONS.values()) == {field.name for field in fields(GearOptions)}
-    assert not shares_gears(helical_scene('skip.off=["reuse"]'))
-    assert shares_gears(helical_scene('skip.off=["reuse"]', "contact.friction=0.1"))  # a single coefficient
+    assert not shares_gears(helical_scene('exact.parts=["reuse"]'))
+    assert shares_gears(helical_scene('exact.parts=["reuse"]', "contact.friction=0.1"))  # a single coefficient
 
 
 def test_levels_are_left_to_the_size_of_the_mesh() -> None:
     """Unless they are switched off, or flanks wear."""
     wearing = helical_scene("contact.friction=0.1", *WEAR)
-    scenes = helical_scene(), helical_scene('skip.off=["two-level"]'), wearing
+    scenes = helical_scene(), helical_scene('exact.parts=["two-level"]'), wearing
     assert [gear_problem(scene).mesh.two_level for scene in scenes] == [None, False, False]
 
 

@@ -238,7 +238,7 @@ def test_docs_list_every_key() -> None:
         assert row is not None, f"docs/scene.md does not list {name}"
         words = field.json_schema_extra
         assert isinstance(words, dict)
-        allowed = "a list of the names below" if name == "skip.off" else words["allowed"]
+        allowed = "a list of the names below" if name == "exact.parts" else words["allowed"]
         end = r"(; only with [^|]*)?"  # tests/solver/scene/schema/test_dependence.py
         said = re.search(re.escape(f" {field.description} | {allowed}") + end + r" \|", row[1])
         assert said is not None, f"docs/scene.md says something else of {name}"

@@ -47,7 +47,7 @@ class Case:
 
     def scene(self, off: bool) -> Scene:
         """With the skip, or with it switched off."""
-        return helical_scene(*self.settings, *([f"skip.off=[{json.dumps(self.skip)}]"] if off else []))
+        return helical_scene(*self.settings, *([f"exact.parts=[{json.dumps(self.skip)}]"] if off else []))
 
 
 WIDE = ("pinion.face_width_mm=16", "wheel.face_width_mm=16", "load.torque_Nm=1000")
@@ -103,7 +103,7 @@ def test_the_answer_stays(name: str, solved_case: Callable[[str, bool], tuple[di
     assert found.largest <= min(skip_named(case.skip).tolerance, CLOSER.get(name, np.inf)), found
     assert case.skip in {skip["name"] for skip in short["skipped"]}
     assert case.skip not in {skip["name"] for skip in long["skipped"]}
-    assert long["scene"]["skip"]["off"] == [case.skip]
+    assert long["scene"]["exact"]["parts"] == [case.skip]
     assert f"not skipped: {case.skip}\n" in (folder / "run.log").read_text(encoding="utf-8")
 
 
@@ -209,7 +209,7 @@ def test_output_is_written(
 
 def test_what_does_not_apply_is_not_switched_off() -> None:
     """A helical scene is never plane: its skip is neither made nor called off."""
-    scene = helical_scene('skip.off=["plane", "window"]')
+    scene = helical_scene('exact.parts=["plane", "window"]')
     assert "plane" not in {skip.name for skip in skipped(scene)}
     assert switched_off(scene) == ["window"]
 
@@ -217,10 +217,10 @@ def test_what_does_not_apply_is_not_switched_off() -> None:
 def test_resuming_wants_the_same_skips() -> None:
     """The set is part of what results depend on, its order and what concerns output only is not; the resolved scene
     keeps it."""
-    scene = helical_scene('skip.off=["window", "one-pitch"]')
+    scene = helical_scene('exact.parts=["window", "one-pitch"]')
     assert scene_from_text(scene.resolved_toml()) == scene
     assert fingerprint(scene) != fingerprint(helical_scene())
-    assert fingerprint(scene) == fingerprint(helical_scene('skip.off=["one-pitch", "fields", "window"]'))
+    assert fingerprint(scene) == fingerprint(helical_scene('exact.parts=["one-pitch", "fields", "window"]'))
 
 
 def test_why_a_large_pair_has_one_mesh_is_said() -> None:
@@ -235,7 +235,7 @@ def test_why_a_large_pair_has_one_mesh_is_said() -> None:
     assert one_mesh_reason(helical_scene("contact.friction=0.1", *WEAR)) == ""
     spur = load_scene("demos/he2022.toml", ["pinion.lead_crowning_um=8", "mesh.level='fine'"])
     assert one_mesh_reason(spur) in overview(spur) and "as long as high" in one_mesh_reason(spur)
-    off = load_scene("demos/yang2022.toml", ['skip.off=["two-level"]'])
+    off = load_scene("demos/yang2022.toml", ['exact.parts=["two-level"]'])
     assert switched_off(off) == ["two-level"]
 
 
@@ -243,19 +243,19 @@ def test_unknown_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     """Status 2, and the message lists the names."""
     path = tmp_path / "scene.toml"
     path.write_text(HELICAL, encoding="utf-8")
-    assert main(["run", str(path), "--out", str(tmp_path / "out"), "--no-skip", "window", "--no-skip", "plain"]) == 2
+    assert main(["run", str(path), "--out", str(tmp_path / "out"), "--exact", "window", "--exact", "plain"]) == 2
     message = capsys.readouterr().err
-    assert 'skip.off[1]: found "plain"' in message
+    assert 'exact.parts[1]: found "plain"' in message
     assert all(skip.name in message for skip in SKIPS)
     assert list(tmp_path.iterdir()) == [path]
 
 
 def test_check_names_what_is_off(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`check` lists skips by name, and apart from them what is computed the long way."""
+    """`check` lists skips by name, and apart from them what is computed without."""
     path = tmp_path / "scene.toml"
     path.write_text(HELICAL, encoding="utf-8")
-    assert main(["check", str(path), "--no-skip", "window"]) == 0
-    made, off = capsys.readouterr().out.split("Computed the long way\n")
+    assert main(["check", str(path), "--exact", "window"]) == 0
+    made, off = capsys.readouterr().out.split("Computed without simplification\n")
     assert "  one-sector " in made
     assert "  window " not in made
     assert off.split("\n\n")[0].split() == ["window"]  # warnings come after it
@@ -270,7 +270,7 @@ def test_ranks_agree_the_long_way(run_script: RunScript, tmp_path: Path) -> None
     quiet = [f"--set=output.{name}=false" for name in ("pictures", "animation", "fields")]
     spur = [*(f"--set={setting}" for setting in (*SPUR, "mesh.order=1")), *quiet, "--quiet"]
     summaries = []
-    for ranks, more in ((1, ()), (2, ("--no-skip", "reuse", "--no-skip", "one-sector"))):
+    for ranks, more in ((1, ()), (2, ("--exact", "reuse", "--exact", "one-sector"))):
         out = tmp_path / str(ranks)
         done = run_script("-m", "evolvent", "run", str(scene), "--out", str(out), *spur, *more, ranks=ranks)
         assert done.returncode == 0, done.stderr

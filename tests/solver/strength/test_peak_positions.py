@@ -12,7 +12,7 @@ from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state, uniform_pitch
-from evolvent.results.error_bars.peak_bounds import beside_largest
+from evolvent.results.error_bars.peak_bounds import peak_bounds
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.strength.peak_positions import (
     GAIN,
@@ -54,7 +54,7 @@ def test_no_stress_may_be_higher_beside_the_peaks() -> None:
     rises = []
     for found, first in zip(peaks(every.roots), peaks(before.roots)):
         rises.append(found[1].max() / first[1].max() - 1.0)
-        for each in beside_largest(*found):
+        for each in peak_bounds(*found):
             assert each.height <= (1.0 + GAIN) * found[1].max() or each.width <= NARROWEST * pitch
     assert min(rises) >= 0.0 and max(rises) > 0.01
 

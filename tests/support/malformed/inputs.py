@@ -144,9 +144,12 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "run: set without a value": (["run", SCENE, "--set"], "--set", "nothing", "a value behind the option"),
     "run: set nothing": (["run", SCENE, "--out", "{folder}/out", "--set", ""], "--set", '""', "write for example"),
     "run: no skip of that name": (
-        ["run", SCENE, "--out", "{folder}/out", "--no-skip", "pictres"], "skip.off[0]", '"pictres"', 'write "pictures"',
+        ["run", SCENE, "--out", "{folder}/out", "--exact", "pictres"],
+        "exact.parts[0]", '"pictres"', 'write "pictures"',
     ),
-    "run: empty skip": (["run", SCENE, "--out", "{folder}/out", "--no-skip", ""], "skip.off[0]", '""', "give names of"),
+    "run: empty skip": (
+        ["run", SCENE, "--out", "{folder}/out", "--exact", ""], "exact.parts[0]", '""', "give names of",
+    ),
     "run: no such scene": (
         ["run", "{folder}/no.toml", "--out", "{folder}/out"], "scene file", "No such file", "check the path",
     ),

@@ -132,9 +132,9 @@ WRONG_VALUES: dict[str, tuple[str, list[str], str, str, str]] = {
     "first block too long": (HE, [*WEAR, "wear.first_block_cycles=2e6"], "wear.first_block_cycles", "2000000", "short"),
     "blocks of another kind": (HE, [*WEAR, "wear.blocks=midpoint"], "wear.blocks", "midpoint", "implicit"),
     "wear at several μ": (YANG, WEAR, "contact.friction", "[0", "give one coefficient"),
-    "wear of all pitches": (HE, [*WEAR, "skip.off=one-pitch"], "skip.off", "one-pitch", "leave one-pitch out"),
+    "wear of all pitches": (HE, [*WEAR, "exact.parts=one-pitch"], "exact.parts", "one-pitch", "leave one-pitch out"),
     "wear of deflected flanks": (
-        HE, [*WEAR, "skip.off=deflected-flanks"], "skip.off", "deflected-flanks", "leave deflected-flanks out",
+        HE, [*WEAR, "exact.parts=deflected-flanks"], "exact.parts", "deflected-flanks", "leave deflected-flanks out",
     ),
     "wear a number": (HE, ["wear=1e6"], "wear", "1000000", "[wear]"),
     "worn away": (HE, [*WEAR, "wear.cycles=1e12"], "wear.cycles", "1e+12", "fewer cycles"),

@@ -79,10 +79,10 @@ OTHERS = {
     "wear.report_at_cycles": "[1e5]", "wear.tolerance": "0.1", "wear.blocks": '"explicit"',
     "wear.first_block_cycles": "2e4", "wear.refresh_um": "3.0", "dynamics.speed_rpm": "[500.0, 9000.0]",
     "dynamics.speeds": "200", "dynamics.mesh": '"tangent"', "dynamics.torque_percents": "[50.0, 100.0, 200.0]",
-    "dynamics.damping_ratio": "0.07", "dynamics.damped_apart": "true", "dynamics.ground_damping_ratio": "0.01",
+    "dynamics.damping_ratio": "0.07", "dynamics.damping_in_separation": "true", "dynamics.ground_damping_ratio": "0.01",
     "dynamics.backlash_um": "40.0", "dynamics.density_kg_m3": "7200.0", "dynamics.pinion_inertia_kg_m2": "1e-3",
     "dynamics.wheel_inertia_kg_m2": "1e-2", "dynamics.series_stiffness_N_per_um": "500.0",
-    "dynamics.operating_rpm": "3000.0", "dynamics.coming": '"down"', "dynamics.histories_rpm": "[2000.0]",
+    "dynamics.operating_rpm": "3000.0", "dynamics.approach": '"run_down"', "dynamics.histories_rpm": "[2000.0]",
     "dynamics.bodies": '"rigid"', "dynamics.map_percents": "[50.0, 150.0]", "dynamics.map_speeds": "50",
     "dynamics.base_pitch_deviation_um": "5.0", "dynamics.profile_deviation_um": "5.0", "dynamics.tolerance_class": "7",
     "dynamics.flank_surface": '"cast_iron"', "dynamics.contact_endurance_MPa": "1400.0",
@@ -96,7 +96,7 @@ OTHERS = {
     "fatigue.tension_factor": "0.5", "fatigue.compression_factor": "0.2", "fatigue.normal_factor": "0.5",
     "fatigue.exponents": "[9.0]", "output.pictures": "false", "output.animation": "false", "output.fields": "false",
     "output.deformation": "true", "output.error_bars": "false",
-    "skip.off": '["plane"]',
+    "exact.parts": '["plane"]',
 }
 CHARTS = {"pinion.csv": "diameter_mm,depth_um\n50,3\n70,5\n", "wheel.csv": "diameter_mm,depth_um\n110,3\n130,5\n"}
 """Name -> text of a chart of either gear."""

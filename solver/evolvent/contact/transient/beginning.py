@@ -14,7 +14,7 @@ from evolvent.contact.transient.energy import Energy, EnergyBalance, contact_ene
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
 from evolvent.contact.transient.settings import InitialState, TransientSettings
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, TimeScheme, TimeStep
 from evolvent.fem.body import Body
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.input_checks import Words, refuse
@@ -59,8 +59,8 @@ def begun(
             forces = solution.nodal_forces[index]
             position = body.at_rest(forces, step.load, response.resultant, solution.motions[index])
         velocity = _velocity(body, index, start)
-        still = BodyMotion(MotionState(position, velocity, np.zeros_like(position)), position * 0.0, response, forces)
-        motions.append(_accelerated(still))
+        still = KinematicState(position, velocity, np.zeros_like(position))
+        motions.append(_accelerated(BodyMotion(still, position * 0.0, response, forces)))
     total = Energy.of(motions, contact_energy(solution.contacts if solution else ())).total
     return Reached(0.0, 0.0, length, tuple(motions), deformed, EnergyBalance(total, total))
 
@@ -88,7 +88,7 @@ def _accelerated(still: BodyMotion) -> BodyMotion:
     rest = (force - system.damping * state.velocity - system.stiffness * state.position)[moving]
     acceleration = np.zeros(len(state.position))
     acceleration[moving] = np.linalg.solve(system.mass[np.ix_(moving, moving)], rest)
-    return BodyMotion(MotionState(state.position, state.velocity, acceleration), still.lag, response, still.forces)
+    return BodyMotion(KinematicState(state.position, state.velocity, acceleration), still.lag, response, still.forces)
 
 
 def check(problem: Problem, settings: TransientSettings, start: InitialState) -> None:

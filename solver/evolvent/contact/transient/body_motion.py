@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.contact.transient.moving_response import MovingResponse
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState
 from evolvent_meshes.arrays import Floats
 
 
@@ -15,7 +15,7 @@ from evolvent_meshes.arrays import Floats
 class BodyMotion:
     """Motion of a body with m modes, r rigid motions and k functionals at one time."""
 
-    state: MotionState
+    state: KinematicState
     """Position, velocity and acceleration of modes and rigid motions (m + r)."""
     lag: Floats
     """Difference (m + r,) between the acceleration of the state and z̈: α (a_{n+1} − a_n), in proportion to the
@@ -25,7 +25,7 @@ class BodyMotion:
     forces: Floats
     """Contact forces on the functionals of the body (k,)."""
 
-    def state_for(self, stretch: float) -> MotionState:
+    def state_for(self, stretch: float) -> KinematicState:
         """The state, for a step that is `stretch` times as long as the one before: its acceleration has the lag of such
         a step. With that of another length the method would be of first order."""
         if stretch == 1.0:

@@ -32,7 +32,7 @@ from evolvent.contact.transient.moving_response import MovingResponse
 from evolvent.contact.transient.one_step import SolvedStep
 from evolvent.contact.transient.time_schemes.midpoint_step import MidpointStep
 from evolvent.contact.transient.time_schemes.stretch import AIM, try_stretches
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, TimeScheme
 from evolvent.fem.body import RigidMotions
 from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.input_checks import refuse
@@ -218,7 +218,9 @@ class StretchedSteps:
         damped = sum(step.damped(state) for step, state in zip(steps, states))
         return self._end(states, contact, damped, middle.state.iterations + contact.state.iterations)
 
-    def _end(self, states: list[MotionState], contact: ContactEquilibrium, damped: float, iterations: int) -> StepEnd:
+    def _end(
+        self, states: list[KinematicState], contact: ContactEquilibrium, damped: float, iterations: int
+    ) -> StepEnd:
         """State at the end of the step from the states of the bodies, after damping has dissipated `damped` [N·mm]."""
         motions = tuple(
             BodyMotion(state, np.zeros_like(state.position), response, forces)

@@ -10,7 +10,7 @@ import numpy as np
 from evolvent.contact.problem.definition import Step
 from evolvent.contact.problem.rigid_motions import motions_at
 from evolvent.contact.transient.moving_body import MovingBody
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState, StepEquations
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, StepEquations
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.errors import InputError
 
@@ -67,7 +67,7 @@ class MovingResponse:
         """Force (s,) on the free rigid motions beside the loads of the step, from inertia and damping [N, N·mm]."""
         return self.step.known[self._free] - self.step.matrix[np.ix_(self._free, self.held)] @ self._held_at
 
-    def state(self, forces: Floats, motion: Floats) -> MotionState:
+    def state(self, forces: Floats, motion: Floats) -> KinematicState:
         """State of the body at the end, under forces on the functionals (k,) at rigid motions (r,)."""
         return self.step.after(np.concatenate([self.modes(forces), motion]))
 

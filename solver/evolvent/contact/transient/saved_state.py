@@ -23,7 +23,7 @@ from evolvent.contact.transient.energy import EnergyBalance
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
 from evolvent.contact.transient.settings import TransientSettings
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.digests import digest
 from evolvent_meshes.errors import InputError
@@ -92,7 +92,7 @@ def _motion(path: Path, arrays: Mapping[str, Any], index: int, body: MovingBody,
         )
     factor, resultant, prescribed = float(kept["factor"]), kept["resultant"], kept["prescribed"]
     response = MovingResponse(body, TimeStep.unused(body.system, scheme), factor, resultant, prescribed)
-    return BodyMotion(MotionState(*kept["state"]), kept["lag"], response, kept["forces"])
+    return BodyMotion(KinematicState(*kept["state"]), kept["lag"], response, kept["forces"])
 
 
 def _projections(body: MovingBody) -> Floats:

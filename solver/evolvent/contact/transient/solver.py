@@ -38,7 +38,7 @@ class CoarseTimeStepWarning(UserWarning):
 
 
 @dataclass(frozen=True)
-class Moment:
+class MotionState:
     """The state at the end of a time step.
 
     time: [s].
@@ -59,6 +59,10 @@ class Moment:
     length: float
     error: float
     systems: int
+
+
+Moment = MotionState
+"""Earlier name of `MotionState`."""
 
 
 class Transient:
@@ -95,7 +99,7 @@ class Transient:
         """Time until which the transient has been solved [s]."""
         return 0.0 if self._reached is None else self._reached.time
 
-    def solve(self, step: Loading = None) -> Moment:
+    def solve(self, step: Loading = None) -> MotionState:
         """The end of the next time step, under the loads and prescribed motions of `step` there.
 
         With a tolerance a step that has a larger error, or cannot be solved, is tried again with a shorter one. Warns
@@ -106,12 +110,12 @@ class Transient:
         """
         return self._solve(step, np.inf)
 
-    def run(self, steps: Sequence[Step] | int) -> Iterator[Moment]:
+    def run(self, steps: Sequence[Step] | int) -> Iterator[MotionState]:
         """One time step after another: under each of these loads, or so many under the full load. Raises as `solve`."""
         for step in [None] * steps if isinstance(steps, int) else steps:
             yield self.solve(step)
 
-    def run_until(self, time: float, step: Loading = None) -> Iterator[Moment]:
+    def run_until(self, time: float, step: Loading = None) -> Iterator[MotionState]:
         """One time step after another to this time [s], as `solve`; the last two are as short as it takes to end there.
 
         step: with a function of time, at the end of each step. Raises as `solve`.
@@ -140,7 +144,7 @@ class Transient:
         run._reached = read_state(Path(path), problem, settings, run.bodies)
         return run
 
-    def _solve(self, loading: Loading, left: float) -> Moment:
+    def _solve(self, loading: Loading, left: float) -> MotionState:
         """The next time step, of at most `left` [s]."""
         bodies = self.bodies
         before = self._reached or begun(
@@ -156,7 +160,7 @@ class Transient:
         velocities = tuple(
             motion.state.velocity[body.count :] for body, motion in zip(bodies, self._reached.motions)
         )
-        return Moment(
+        return MotionState(
             self.time, solved.solution, velocities, solved.energy, self._reached.balance.work, length, solved.error,
             solved.systems,
         )

@@ -17,7 +17,7 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.solution.certificates import certify, energy_imbalance, require_balance
 from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
 from evolvent.gears.sweep.parallel_sweep import division
@@ -148,7 +148,7 @@ def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float
     return result.transmission_error, stiffness * model.width_factor, result.torques[0], result.stored_power
 
 
-def equilibrium(model: GearModel, position: SharedPosition) -> Stand:
+def equilibrium(model: GearModel, position: SharedPosition) -> PairRotation:
     """Angular position of both gears in equilibrium under their torque."""
     return position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
 
@@ -165,10 +165,10 @@ def _searched(
             old = kept[i][j] if kept is not None else None
             position = worn_on(model, old) if old is not None else None
             if position is None:
-                extra = old.contact.stand.extra if old is not None else _predicted(models, row, ahead)
+                beyond_nominal = old.contact.stand.beyond_nominal if old is not None else _predicted(models, row, ahead)
                 near = old or (ahead[j] if ahead else None) or (row[-1] if row else None)
                 patch = near.patch if near is not None else None
-                position = shared_position(model, float(angle), extra, [0.0], patch, exact=True)
+                position = shared_position(model, float(angle), beyond_nominal, [0.0], patch, exact=True)
             row = *row, position
         ahead = row
         yield row
@@ -182,12 +182,12 @@ def _predicted(
     accuracy of a search. ahead: the last position under all torques; empty before the first one."""
     j = len(row)
     if j == 0:
-        return equilibrium(models[0], ahead[0]).extra if ahead else (0.0, 0.0)
+        return equilibrium(models[0], ahead[0]).beyond_nominal if ahead else (0.0, 0.0)
     step = _step_along_tangent(models, row)
     if ahead and (before := _step_along_tangent(models, ahead[:j])) > 0.0:
         last, this = (equilibrium(model, each) for model, each in zip(models[j - 1 : j + 1], ahead[j - 1 : j + 1]))
         step *= (this.transmission_error - last.transmission_error) / before
-    return equilibrium(models[j - 1], row[-1]).turned(models[j].load.on, step / _radius(models[j])).extra
+    return equilibrium(models[j - 1], row[-1]).turned(models[j].load.on, step / _radius(models[j])).beyond_nominal
 
 
 def _step_along_tangent(models: Sequence[GearModel], row: Sequence[SharedPosition]) -> float:

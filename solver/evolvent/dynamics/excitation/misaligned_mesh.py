@@ -48,6 +48,6 @@ def _outward(models: Sequence[GearModel], angle: float, searched: SharedPosition
 
 def _searched(model: GearModel, angle: float, near: SharedPosition | None) -> SharedPosition:
     """A position at a misalignment. near: another one, from whose rotation and contact patch it starts."""
-    extra = equilibrium(model, near).extra if near is not None else (0.0, 0.0)
+    beyond_nominal = equilibrium(model, near).beyond_nominal if near is not None else (0.0, 0.0)
     patch = near.patch if near is not None else None
-    return shared_position(model, angle, extra, [0.0], patch, exact=True)
+    return shared_position(model, angle, beyond_nominal, [0.0], patch, exact=True)

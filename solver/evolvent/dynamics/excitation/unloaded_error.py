@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.flank import Flank
@@ -94,13 +94,13 @@ def unloaded_error(flanks: RigidFlanks, angles: Floats, free: Member = Member.PI
     nominal rotation until the flanks just touch; positive where material is missing. NaN where no flanks face each
     other."""
     count = POINTS * (LAYERS if flanks.varies_over_the_face else 1)
-    stands = [Stand(flanks.pair, float(angle)) for angle in angles]
+    stands = [PairRotation(flanks.pair, float(angle)) for angle in angles]
     size = max(AT_ONCE // (TEETH * count), 1)
     batches = [stands[i : i + size] for i in range(0, len(stands), size)]
     return np.concatenate([_least_gaps(flanks, batch, free) for batch in batches] or [np.zeros(0)])
 
 
-def _least_gaps(flanks: RigidFlanks, stands: Sequence[Stand], free: Member) -> Floats:
+def _least_gaps(flanks: RigidFlanks, stands: Sequence[PairRotation], free: Member) -> Floats:
     """(n,) least gap [mm] of all tooth pairs at each angular position."""
     number, facing = _Facing.of(flanks.pair, stands, free)
     search = _Search(flanks, facing, free)
@@ -122,7 +122,7 @@ class _Facing:
     """(s, 3) translations [mm]."""
 
     @staticmethod
-    def of(pair: GearPair, stands: Sequence[Stand], free: Member) -> tuple[Ints, _Facing]:
+    def of(pair: GearPair, stands: Sequence[PairRotation], free: Member) -> tuple[Ints, _Facing]:
         """Tooth pairs (s,) that may touch, with the indices (s,) of their angular positions."""
         numbers, turns, shifts = [], [], []
         for number, stand in enumerate(stands):

@@ -40,7 +40,7 @@ class MapGrid:
     """(n,) speeds of the pinion, ascending [r/min]."""
     factor: Floats
     """(2, m, n) dynamic factor running up, and down."""
-    apart: Floats
+    separated_share: Floats
     """(2, m, n) share of the time out of contact."""
 
     @staticmethod
@@ -68,10 +68,10 @@ def torque_map_figure(rows: Sequence[MapRow]) -> Figure:
     grid = MapGrid.of(rows)
     figure = sheet("Dynamic factor over speed and torque", _largest(grid), (11.0, 8.4))
     panels, norm = figure.subplots(2, 1, sharex=True, sharey=True), LogNorm(1.0, float(grid.factor.max()))
-    for axes, way, factor, apart in zip(panels, WAYS, grid.factor, grid.apart):
+    for axes, way, factor, separated in zip(panels, WAYS, grid.factor, grid.separated_share):
         drawn = _draw_cells(axes, grid, factor, norm)
-        if grid.apart.any():
-            _draw_region(axes, grid, apart > 0.0)
+        if grid.separated_share.any():
+            _draw_region(axes, grid, separated > 0.0)
         _draw_natural(axes, grid)
         axes.set_title(way, loc="left", fontsize=10, color=INK)
         axes.set_ylabel("torque [N·m]")
@@ -96,7 +96,7 @@ def _largest(grid: MapGrid) -> str:
     for way, factor in zip(WAYS, grid.factor):
         i, j = np.unravel_index(int(np.argmax(factor)), factor.shape)
         found.append(f"{factor[i, j]:.3g} {way} ({grid.speeds[j]:.0f} r/min, {grid.torques[i]:.4g} N·m)")
-    return f"Largest: {', '.join(found)}; flanks {'part' if grid.apart.any() else 'never part'}."
+    return f"Largest: {', '.join(found)}; flanks {'part' if grid.separated_share.any() else 'never part'}."
 
 
 def _feet(different: Bools, bodies: str) -> list[str]:

@@ -49,9 +49,9 @@ class Response:
     """Largest mesh force [N]."""
     smallest_force: float
     """Smallest mesh force [N]; below 0 where back flanks press, or the damper pulls."""
-    apart: float
+    separated_share: float
     """Share of the time out of contact."""
-    behind: float
+    back_contact_share: float
     """Share of the time on the back flanks."""
     spectrum: Spectrum
     """Spectrum of the motion, with the lines between the mesh harmonics."""
@@ -84,8 +84,9 @@ def response(model: TorsionalModel, period: float, state: Floats, repeats: int =
     spectrum = Spectrum(np.arange(1, count + 1) / repeats, s[:count], F[:count])
     paths += histories(model, period, end_of(paths[-1]), later, wanted[:1])
     largest, smallest = max(path.largest_force for path in paths), min(path.smallest_force for path in paths)
-    apart, behind = (float(np.mean([getattr(path, name) for path in paths])) for name in ("apart", "behind"))
-    return Response(s[mesh], x[mesh], F[mesh], largest, smallest, apart, behind, spectrum)
+    separated = float(np.mean([path.separated_share for path in paths]))
+    back_contact = float(np.mean([path.back_contact_share for path in paths]))
+    return Response(s[mesh], x[mesh], F[mesh], largest, smallest, separated, back_contact, spectrum)
 
 
 def histories(model: TorsionalModel, period: float, state: Floats, repeats: int, phases: Floats) -> list[History]:

@@ -216,7 +216,7 @@ def advance(
     """
     stages, out = np.empty((STAGES, SIZE)), np.empty(SIZE)
     begin, left = np.empty((2, 2)), np.empty((2, 2))
-    region, apart, behind = region_at(o, cells[0, 0], cells[0, 1], stops[0], T, y), 0.0, 0.0
+    region, separated, back_contact = region_at(o, cells[0, 0], cells[0, 1], stops[0], T, y), 0.0, 0.0
     smallest, largest = np.inf, -np.inf
     for k in range(len(cells)):
         front, back = cells[k, 0], cells[k, 1]
@@ -228,9 +228,9 @@ def advance(
             whole = (end - τ) / count
             h, border = step_in_region(o, region, front, back, τ, whole, T, y, stages, begin, out, left)
             if region == FREE:
-                apart += h
+                separated += h
             elif region < FREE:
-                behind += h
+                back_contact += h
             τ = end if count == 1.0 and border == NOWHERE and h == whole else τ + h
             for n in range(SIZE):
                 y[n] = out[n]
@@ -244,4 +244,4 @@ def advance(
                 region = following
     if len(path):
         record(o, region, cells[-1, 0], cells[-1, 1], stops[-1], T, y, path[-1])
-    return apart, behind, smallest, largest
+    return separated, back_contact, smallest, largest

@@ -147,14 +147,14 @@ class _Legs:
 def _motion(model: TorsionalModel, region: int, sides: dict[int, _SmoothSide], period: float) -> Motion:
     """Right-hand side of the equation of motion while a side touches, 1 or −1, or none, 0."""
     side = sides.get(region, sides[1])
-    damper = sides[1] if model.damped_apart else side
+    damper = sides[1] if model.damping_in_separation else side
 
     def motion(t: float, y: Floats) -> list[float]:
         s, v = y.tolist()
         force = model.load - model.ground_damping * v
         if region:
             force -= side.sign * side.pressed(t / period, side.depth(t / period, s))
-        if region or model.damped_apart:
+        if region or model.damping_in_separation:
             force -= model.damping * (v - damper.sign * damper.error_slope(t / period) / period)
         return [v, force / model.mass]
 

@@ -38,7 +38,7 @@ class TorsionalModel:
     """Number of teeth of the pinion, from which messages state its speed; None: they state the mesh period."""
     damping: float = 0.0
     """Damping c of the mesh [N·s/mm]."""
-    damped_apart: bool = False
+    damping_in_separation: bool = False
     """Whether c acts in free flight, too, as it does in He et al. (Eq. 15); then with ė of the loaded flanks wherever
     flanks touch."""
     ground_damping: float = 0.0
@@ -61,7 +61,7 @@ class TorsionalModel:
     def oscillator(self) -> Oscillator:
         """Parameters of the equation of motion for compiled code."""
         return Oscillator(
-            float(self.mass), float(self.damping), bool(self.damped_apart), float(self.ground_damping),
+            float(self.mass), float(self.damping), bool(self.damping_in_separation), float(self.ground_damping),
             float(self.load), self.law.front, self.law.back,
         )
 
@@ -108,9 +108,9 @@ class History:
     """(k + 1,) unloaded transmission error e of the loaded flanks [mm]."""
     transmission_error: Floats
     """(k + 1,) displacement between the bores [mm]: s itself where bodies are rigid."""
-    apart: float
+    separated_share: float
     """Share of the period out of contact."""
-    behind: float
+    back_contact_share: float
     """Share of the period on the back flanks."""
     smallest_force: float
     """Smallest mesh force [N] of these phases and of both sides of each instant at which contact begins or ends, where
@@ -137,11 +137,11 @@ def history(model: TorsionalModel, period: float, state: Floats, phases: Floats 
     beside those at which the force is not smooth."""
     y, (stops, cells) = _with_derivatives(state), model.law.stops(phases)
     path = np.empty((len(stops), 5))
-    apart, behind, low, high = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
+    separated, back, low, high = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
     s, v, side, force, error = path.T
     smallest, largest = min(low, float(force.min())), max(high, float(force.max()))
     bores = model.between_bores(s, force)
-    return History(stops, s, v, side.astype(np.int64), force, error, bores, apart, behind, smallest, largest)
+    return History(stops, s, v, side.astype(np.int64), force, error, bores, separated, back, smallest, largest)
 
 
 def _with_derivatives(state: Floats) -> Floats:

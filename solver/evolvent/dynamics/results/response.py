@@ -149,7 +149,7 @@ class DriveSummary:
     damping_ratio: float
     """Damping ratio of the mesh, as in the scene."""
     damped_apart: bool
-    """Whether the damping of the mesh acts in free flight, as in the scene."""
+    """Whether the damping of the mesh acts in free flight, dynamics.damping_in_separation."""
     ground_damping_ratio: float
     """Damping ratio of the shafts against the ground, as in the scene."""
     mesh_frequency_Hz: float
@@ -234,8 +234,8 @@ def response_rows(
                 **{f"force_harmonic_{r}_N": float(size) for r, size in enumerate(each.force, 1)},
                 largest_force_N=each.largest_force, smallest_force_N=each.smallest_force,
                 dynamic_factor=each.largest_force / drive.model.load, dynamic_factor_error=float(factor_error),
-                dynamic_factor_iso=iso.factor(speed), separated_share=each.apart, back_contact_share=each.behind,
-                near_body_vibration=near_body_vibration(drive, speed),
+                dynamic_factor_iso=iso.factor(speed), separated_share=each.separated_share,
+                back_contact_share=each.back_contact_share, near_body_vibration=near_body_vibration(drive, speed),
             )
 
 
@@ -277,7 +277,7 @@ def summary(
         moving_stiffness_N_per_um=1e-3 * drive.moving_stiffness,
         body_frequency_Hz=drive.body_frequency if settings.bodies is not None else None,
         static_force_N=drive.model.load, damping_N_s_per_mm=drive.model.damping, backlash_um=UM * settings.backlash,
-        mesh=settings.mesh, damping_ratio=settings.damping_ratio, damped_apart=settings.damped_apart,
+        mesh=settings.mesh, damping_ratio=settings.damping_ratio, damped_apart=settings.damping_in_separation,
         ground_damping_ratio=settings.ground_damping_ratio, mesh_frequency_Hz=drive.natural_speed * drive.teeth / 60.0,
         folds_rpm=folds, jumps_up_rpm=jumps(drive, swept.up), jumps_up_rpm_error=errors.jumps["up"],
         jumps_down_rpm=jumps(drive, swept.down[::-1]), jumps_down_rpm_error=errors.jumps["down"],

@@ -55,5 +55,6 @@ def map_rows(torque: float, drive: Drive, swept: SpeedSweep) -> Iterator[MapRow]
                 way=way, repeats=run.repeats, equivalent_amplitude_um=UM * each.equivalent_amplitude,
                 elastic_equivalent_amplitude_um=UM * each.elastic_equivalent_amplitude,
                 largest_force_N=each.largest_force, dynamic_factor=each.largest_force / drive.model.load,
-                separated_share=each.apart, back_contact_share=each.behind, bodies=drive.settings.bodies_named,
+                separated_share=each.separated_share, back_contact_share=each.back_contact_share,
+                bodies=drive.settings.bodies_named,
             )

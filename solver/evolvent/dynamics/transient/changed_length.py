@@ -23,11 +23,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, LinearSystem, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 
 
-def stretched(scheme: TimeScheme, state: MotionState, before: Floats, stretch: float) -> tuple[MotionState, Floats]:
+def stretched(
+    scheme: TimeScheme, state: KinematicState, before: Floats, stretch: float
+) -> tuple[KinematicState, Floats]:
     """The state and the acceleration one step before it, for a step `stretch` times as long as the one before.
 
     before: a_{n−1} (m,).
@@ -39,13 +41,13 @@ def stretched(scheme: TimeScheme, state: MotionState, before: Floats, stretch: f
     return replace(state, acceleration=lagging), lagging - stretch * change
 
 
-def motion_energy(system: LinearSystem, state: MotionState) -> float:
+def motion_energy(system: LinearSystem, state: KinematicState) -> float:
     """Kinetic and elastic energy of a state [N·mm; N in 2D]."""
     kinetic = 0.5 * float(state.velocity @ (system.mass @ state.velocity))
     return kinetic + 0.5 * float(state.position @ (system.stiffness * state.position))
 
 
-def step_error(step: TimeStep, end: MotionState, energy: float) -> float:
+def step_error(step: TimeStep, end: KinematicState, energy: float) -> float:
     """Error √(eᵀM e)/h over √2E of a step, e = c h² (a_{n+1} − a_n). energy: E > 0, the largest so far."""
     e = step.scheme.error_constant * step.length * (end.acceleration - step.state.acceleration)
     return float(np.sqrt(e @ (step.system.mass @ e) / (2.0 * energy)))

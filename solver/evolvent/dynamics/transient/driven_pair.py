@@ -66,7 +66,7 @@ def driven_pair(
     drive = Drive.free(u, (pinion, wheel), torques)
     if constant_speed:
         drive = Drive.at_constant_speed(on, (pinion, wheel)[on], torques)
-    pair = MovingPair(model, modes, drive, mode_damping, 0.0, settings.damped_apart)
+    pair = MovingPair(model, modes, drive, mode_damping, 0.0, settings.damping_in_separation)
     stiffness = float(np.mean([result.stiffness for result in static]))
     critical = 2.0 * np.sqrt(stiffness * drive.inertia) / pair.lever
     return replace(pair, mesh_damping=settings.damping_ratio * critical)

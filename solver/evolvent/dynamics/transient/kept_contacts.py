@@ -16,7 +16,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_step import SearchedContact
 from evolvent.gears.contact.pair_contact import gear_contact
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 
 REACH = 1e-3
 """Largest displacement of the flanks from where they were searched [modules], up to which a search is used."""
@@ -124,7 +124,7 @@ class KeptContacts:
 
     def _searched(self, phase: float, multiple: int, half_width: float) -> SearchedContact:
         model, angle, ψ = self.pair.model, phase * self.step_angle, multiple * self._spacing
-        stand = Stand(model.pair, angle, self.pair.drive.rotations(ψ))
+        stand = PairRotation(model.pair, angle, self.pair.drive.rotations(ψ))
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.geometry.teeth:
             raise NotConverged(

@@ -85,7 +85,7 @@ class MovingPair:
     mesh_damping: float
     """Damping of the mesh: force along the line of action per unit rate of the transmission error [N·s/mm; N·s/mm² in
     2D]."""
-    damped_apart: bool = False
+    damping_in_separation: bool = False
     """Whether the damping of the mesh acts on separated flanks, too."""
 
     @cached_property
@@ -123,7 +123,7 @@ class MovingPair:
     @cached_property
     def system_apart(self) -> LinearSystem:
         """Mass, damping and stiffness of modes and ψ, (m + 1) coordinates, with separated flanks."""
-        if self.damped_apart:
+        if self.damping_in_separation:
             return self.system
         return replace(self.system, damping=np.append(self.system.damping[:-1], 0.0))
 

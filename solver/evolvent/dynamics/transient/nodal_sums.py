@@ -12,7 +12,7 @@ import numpy as np
 
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.gears.condensed_gear import GearBody
-from evolvent.gears.kinematics import Stand, turn
+from evolvent.gears.kinematics import PairRotation, turn
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
@@ -33,7 +33,7 @@ class NodalSums:
     """Moments of the forces on pinion and wheel, both about the pinion's axis [N·mm; N in 2D]."""
 
     @staticmethod
-    def of(pair: MovingPair, searched: Stand, result: PositionResult) -> NodalSums:
+    def of(pair: MovingPair, searched: PairRotation, result: PositionResult) -> NodalSums:
         """Sums of the contact forces of a result. searched: where the gears stood in the search, in whose frames the
         forces are."""
         rows, forces = (result.pinion_rows, result.wheel_rows), (result.pinion_forces, result.wheel_forces)

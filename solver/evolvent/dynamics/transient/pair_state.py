@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.contact.transient.time_schemes.scheme_energy import SchemeEnergy
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, TimeScheme
 from evolvent.dynamics.transient.changed_length import motion_energy, step_error, stretched
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
@@ -23,7 +23,7 @@ from evolvent_meshes.gears.member import Member
 class PairState:
     """State of a gear pair at the start of a time step."""
 
-    motion: MotionState
+    motion: KinematicState
     """Position, velocity and acceleration of modes and ψ."""
     history: FrictionHistory | None
     """Friction history; None without friction."""
@@ -78,7 +78,7 @@ class SolvedStep:
     """Searched contact at the end of the step."""
     found: Equilibrium
     """Equilibrium of the contact at the end of the step."""
-    motion: MotionState
+    motion: KinematicState
     """Position, velocity and acceleration of modes and ψ at the end of the step."""
     stored: float
     """Energy of the residual static compliance and of the contact at the end of the step [N·mm; N in 2D]."""

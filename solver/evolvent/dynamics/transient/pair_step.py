@@ -19,7 +19,7 @@ from evolvent.contact.newton.applied_compliance import with_modes
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.equilibrium import Equilibrium, free_motion, with_components
 from evolvent.contact.newton.jump_compliance import JumpCompliance
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, TimeStep
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.fem.parallel.memory import array_bytes
 from evolvent.gears.condensed_gear import GearBody
@@ -125,7 +125,7 @@ class PairStep:
         force, traction = np.zeros((len(jump), k)), np.zeros((len(operator.weights), k))
         return Equilibrium(force, traction, δ, jump[:, :k], 0, 0.0)
 
-    def state(self, at: SearchedContact, found: Equilibrium) -> MotionState:
+    def state(self, at: SearchedContact, found: Equilibrium) -> KinematicState:
         """Position, velocity and acceleration of modes and ψ at the end of the step."""
         m, D, b = self.pair.count, self.step.matrix, self.step.known
         ψ = at.searched + float(found.motion[0])

@@ -14,7 +14,7 @@ from functools import lru_cache, reduce
 import numpy as np
 
 from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, TimeScheme, TimeStep
 from evolvent.dynamics.transient.certificates import WITHIN, certify_step
 from evolvent.dynamics.transient.divided_steps import UNDIVIDED, DividedSteps, StepsTaken, part
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
@@ -23,7 +23,7 @@ from evolvent.dynamics.transient.nodal_sums import NodalSums
 from evolvent.dynamics.transient.pair_state import PairState, SolvedStep
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
 from evolvent.dynamics.transient.step_balance import Residuals, StepBalance, StepEnergies, stored_energy
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump
 from evolvent.gears.sweep.frictional_position import frictional_equilibrium
@@ -103,7 +103,7 @@ class PairTransient:
     def _earlier(self, state: PairState) -> PairState:
         """State with the teeth renumbered by one pitch, so that the next position is at rotation 0 again."""
         m, pair = state.motion, self.pair
-        motion = MotionState(*(pair.earlier(each, 1) for each in (m.position, m.velocity, m.acceleration)))
+        motion = KinematicState(*(pair.earlier(each, 1) for each in (m.position, m.velocity, m.acceleration)))
         history = None if state.history is None else state.history.earlier(1)
         before = None if state.before is None else state.before.earlier(pair)
         return replace(state, motion=motion, history=history, vibration=pair.earlier(state.vibration, 1), before=before)
@@ -173,7 +173,7 @@ class PairTransient:
         this damping or without. Where flanks that would touch without are kept apart by the damping alone, they touch
         without it."""
         first = ended(guess)
-        if self.pair.damped_apart or first.touches is guess:
+        if self.pair.damping_in_separation or first.touches is guess:
             return first
         other = ended(not guess)
         return other if guess or other.touches else first
@@ -194,7 +194,7 @@ class PairTransient:
     def _moment(self, solved: SolvedStep, reached: float, rejected: int) -> MovingMoment:
         """Result at the end of an accepted time step. reached: positions since the start."""
         pair, at, found, motion, before = self.pair, solved.at, solved.found, solved.motion, solved.begin.before
-        stand = replace(at.contact.stand, extra=pair.drive.rotations(float(motion.position[-1])))
+        stand = replace(at.contact.stand, beyond_nominal=pair.drive.rotations(float(motion.position[-1])))
         result = replace(
             position_result(pair.model, at.contact, found, self.friction, NO_STIFFNESS, 0), stand=stand
         )
@@ -218,7 +218,7 @@ class PairTransient:
         k = solved.halvings
         return k if rejected else self.division.after(k, solved.error, reached)
 
-    def _history(self, at: SearchedContact, found: Equilibrium, stand: Stand) -> FrictionHistory | None:
+    def _history(self, at: SearchedContact, found: Equilibrium, stand: PairRotation) -> FrictionHistory | None:
         if not self.friction:
             return None
         return replace(FrictionHistory.of(self.pair.model, at.contact, found), stand=stand)

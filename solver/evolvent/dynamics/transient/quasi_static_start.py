@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_state import PairState
 from evolvent.gears.sweep.contact_patch import ContactPatch
@@ -38,7 +38,7 @@ class QuasiStaticStart:
 
     def at(self, time_step: float) -> PairState:
         """Initial state of a transient. time_step: between two positions [s]."""
-        motion = MotionState(self.position, self.change / time_step, np.zeros(len(self.position)))
+        motion = KinematicState(self.position, self.change / time_step, np.zeros(len(self.position)))
         return PairState(motion, self.history, np.zeros(len(self.position) - 1), self.patch)
 
 
@@ -58,4 +58,5 @@ def quasi_static_starts(pair: MovingPair, step_angle: float, frictions: Sequence
 
 def _coordinates(pair: MovingPair, result: PositionResult) -> Floats:
     """Amplitudes of the modes, and ψ (m + 1,), at a static position."""
-    return np.append(pair.static(pair.modal_forces(result)), pair.drive.of(result.stand.extra, pair.base_radii))
+    ψ = pair.drive.of(result.stand.beyond_nominal, pair.base_radii)
+    return np.append(pair.static(pair.modal_forces(result)), ψ)

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_state import PairState
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.friction_history import FrictionHistory
 
@@ -31,12 +31,12 @@ def start_from_rest(pair: MovingPair, problem: GearProblem, speed: float, fricti
     velocity = np.append(rest, speed * pair.base_radii[0] / pair.lever)
     load = np.append(rest, pair.drive.torque)
     acceleration = np.linalg.solve(pair.system.mass, load - pair.system.damping * velocity)
-    stand = Stand(pair.model.pair, 0.0, pair.drive.rotations(float(position[-1])))
+    stand = PairRotation(pair.model.pair, 0.0, pair.drive.rotations(float(position[-1])))
     history = _untouched(stand, pair.model.bodies[0].d) if friction else None
-    return PairState(MotionState(position, velocity, acceleration), history, rest)
+    return PairState(KinematicState(position, velocity, acceleration), history, rest)
 
 
-def _untouched(stand: Stand, d: int) -> FrictionHistory:
+def _untouched(stand: PairRotation, d: int) -> FrictionHistory:
     """Friction history of flanks that have not been in contact. d: dimension of space."""
     rows, nothing = np.zeros((0, 2), dtype=int), np.zeros((0, d))
     return FrictionHistory(stand, (rows, rows), (nothing, nothing), nothing)

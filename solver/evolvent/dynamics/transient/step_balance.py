@@ -29,7 +29,7 @@ import numpy as np
 
 from evolvent.contact.newton.equilibrium import Equilibrium, with_components
 from evolvent.contact.transient.time_schemes.scheme_energy import SchemeEnergy
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.nodal_sums import NodalSums
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
@@ -119,7 +119,7 @@ class StepEnd:
     converted: float = 0.0
     """Increase of `motion` as the length of the steps changed [N·mm; N in 2D]."""
 
-    def in_steps_of(self, energy: SchemeEnergy, state: MotionState, before: Floats) -> StepEnd:
+    def in_steps_of(self, energy: SchemeEnergy, state: KinematicState, before: Floats) -> StepEnd:
         """End of the step for a next one of another length, with the energy of its scheme. state, before: motion, and
         acceleration (m + 1,) one step before it, converted to that length."""
         motion = energy.of(state, before)
@@ -141,7 +141,7 @@ class StepBalance:
     """Equations of the step, from the state at its start."""
     span: float
     """Nominal rotation of the pinion in the step [rad]."""
-    state: MotionState
+    state: KinematicState
     """Position, velocity and acceleration of modes and ψ at the end of the step."""
     result: PositionResult
     """Result of the position at the end of the step."""

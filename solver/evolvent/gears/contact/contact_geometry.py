@@ -19,7 +19,7 @@ from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.contact.search_window import arc_distance
 from evolvent.gears.contact.tooth_contact import ToothContact
-from evolvent.gears.kinematics import Stand, spin
+from evolvent.gears.kinematics import PairRotation, spin
 from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_compliance import MappedNodes
 from evolvent_meshes.arrays import Bools, Floats, Ints
@@ -37,7 +37,7 @@ class ContactGeometry:
     """
 
     bodies: tuple[GearBody, ...]
-    stand: Stand
+    stand: PairRotation
     teeth: tuple[ToothContact, ...]
     half_width: float
 

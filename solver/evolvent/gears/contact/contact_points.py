@@ -57,13 +57,15 @@ class ContactPoints:
 
 
 def contact_points(
-    geometry: ContactGeometry, traction: Floats, friction: float, extra: tuple[float, float]
+    geometry: ContactGeometry, traction: Floats, friction: float, beyond_nominal: tuple[float, float]
 ) -> ContactPoints:
-    """The points under pressure, from tractions (q, k) [MPa] at all points. extra: the rotations [rad] beyond the
-    nominal ones in this equilibrium, near those of the search."""
-    pair, searched, operator = geometry.stand.pair, geometry.stand.extra, geometry.operator
+    """The points under pressure, from tractions (q, k) [MPa] at all points.
+
+    beyond_nominal: rotations of both gears beyond the nominal ones in this equilibrium, near those of the search [rad].
+    """
+    pair, searched, operator = geometry.stand.pair, geometry.stand.beyond_nominal, geometry.operator
     radius = pair.pinion.base_radius
-    shift = radius * (extra[0] - searched[0]) - radius * (extra[1] - searched[1])  # r_b2/u is r_b1
+    shift = radius * (beyond_nominal[0] - searched[0]) - radius * (beyond_nominal[1] - searched[1])  # r_b2/u is r_b1
     rate, along = relative_velocity(geometry), line_of_action(pair, geometry.d)[1]
     sliding = np.einsum("ji,jia,a->j", rate, operator.frames, along)
     pressed = np.flatnonzero(traction[:, 0] > 0.0)

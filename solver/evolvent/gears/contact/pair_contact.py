@@ -22,7 +22,7 @@ from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.tooth_contact import PENETRATION, Displaced, tooth_contact
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.gears.member import Member
 
 
@@ -38,7 +38,7 @@ class GearContact:
     bodies: tuple[GearBody, ...]
 
     @property
-    def stand(self) -> Stand:
+    def stand(self) -> PairRotation:
         """Angular position of the gears in the search."""
         return self.geometry.stand
 
@@ -92,7 +92,7 @@ class GearContact:
 
 
 def gear_contact(
-    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float,
+    bodies: tuple[GearBody, GearBody], stand: PairRotation, teeth: list[int], half_width: float,
     displaced: Mapping[int, Displaced] = MappingProxyType({}),
 ) -> GearContact:
     """Searches all tooth pairs that may touch at this stand.

@@ -15,12 +15,12 @@ import numpy as np
 from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.arrays import Floats
 
 
 def pressure_normals(
-    operator: ContactOperator, pinion: GearBody, wheel_flank: Surface, stand: Stand, tooth: int
+    operator: ContactOperator, pinion: GearBody, wheel_flank: Surface, stand: PairRotation, tooth: int
 ) -> Floats:
     """Unit normals (n, d) at the nodes of a tooth pair's contact.
 

@@ -6,14 +6,14 @@ import numpy as np
 
 from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 
 EXTENSION = 0.5  # [module of ξ] beyond the path of contact, where deflection may keep tip edges in contact
 
 
-def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) -> Floats:
+def arc_distance(pinion: GearBody, stand: PairRotation, tooth: Ints | int, node: Ints) -> Floats:
     """Distance [mm of profile arc] of pinion flank nodes from their slice's contact line; where that has left the
     flank, from the flank's end on that side."""
     pair, base = stand.pair, pinion.gear.base_radius
@@ -24,7 +24,7 @@ def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) 
     return np.abs(ρ[node] ** 2 - np.clip(ρ_line, low, high) ** 2) / (2.0 * base)
 
 
-def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tuple[Surface, Surface]:
+def placed_flanks(bodies: tuple[GearBody, ...], stand: PairRotation, tooth: int) -> tuple[Surface, Surface]:
     """The flanks of a tooth pair, pinion's and wheel's, in the common frame."""
     d = bodies[Member.PINION].d
     first, second = (
@@ -33,13 +33,13 @@ def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tup
     return first, second
 
 
-def facets_in_window(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> Bools:
+def facets_in_window(pinion: GearBody, stand: PairRotation, tooth: int, half_width: float) -> Bools:
     """Facets (m,) bool of the pinion that have a node within the window."""
     near = _near_line(pinion, stand, tooth, half_width)
     return np.asarray(near[pinion.flank.facets].any(axis=1))
 
 
-def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> Bools:
+def _near_line(pinion: GearBody, stand: PairRotation, tooth: int, half_width: float) -> Bools:
     """Flank nodes (n,) bool within the window; all where its half-width is infinite."""
     every = np.arange(len(pinion.flank.points))
     if np.isinf(half_width):
@@ -47,7 +47,7 @@ def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) ->
     return (arc_distance(pinion, stand, tooth, every) <= half_width) & _line_within_reach(pinion, stand, tooth)
 
 
-def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> Bools:
+def _line_within_reach(pinion: GearBody, stand: PairRotation, tooth: int) -> Bools:
     """Flank nodes (n,) bool in slices whose contact line is on the path of contact, or near enough its ends that
     deflection can bring the tip's edge into contact."""
     pair = stand.pair

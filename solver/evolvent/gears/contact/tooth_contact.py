@@ -15,7 +15,7 @@ from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.contact.pressure_normals import pressure_normals
 from evolvent.gears.contact.search_window import facets_in_window, placed_flanks
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
 
@@ -58,7 +58,7 @@ class ToothContact:
 
 
 def tooth_contact(
-    bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int, half_width: float, displaced: Displaced | None
+    bodies: tuple[GearBody, GearBody], stand: PairRotation, tooth: int, half_width: float, displaced: Displaced | None
 ) -> ToothContact | None:
     """Searches a tooth pair at this stand; None where its flanks are out of reach.
 

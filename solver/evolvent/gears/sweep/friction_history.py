@@ -15,7 +15,7 @@ from evolvent.contact.newton.equilibrium import Equilibrium, with_components
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand, turn
+from evolvent.gears.kinematics import PairRotation, turn
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 
@@ -32,7 +32,7 @@ class FrictionHistory:
     flux: (m, d), F at the pinion's rows in its own frame [mm].
     """
 
-    stand: Stand
+    stand: PairRotation
     rows: tuple[Ints, Ints]
     forces: tuple[Floats, Floats]
     flux: Floats
@@ -69,7 +69,7 @@ class PreviousJump:
     jump: (n, d), elastic jump w there, in the local frames of now [mm].
     """
 
-    stand: Stand
+    stand: PairRotation
     jump: Floats
 
 
@@ -115,7 +115,7 @@ def _have_equal_rows(histories: Sequence[FrictionHistory]) -> bool:
     return all(np.array_equal(one, other) for rows in others for one, other in zip(rows, first))
 
 
-def _jump(geometry: ContactGeometry, before: Stand, u1: Floats, u2: Floats) -> Floats:
+def _jump(geometry: ContactGeometry, before: PairRotation, u1: Floats, u2: Floats) -> Floats:
     """Elastic jump (n, d) in local frames, w = R_1 u_1 − R_2 Πu_2 of the previous position, turned with the wheel to
     the present one. On deflected flanks the velocity of their points has the rotation of displacements with their
     gears: there each is turned with its own."""

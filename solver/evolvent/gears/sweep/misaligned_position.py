@@ -13,7 +13,7 @@ from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_ove
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.contact.tooth_contact import ToothContact
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep.position_search import SharedPosition, free_rotation, free_shift
 from evolvent.gears.sweep.worn_position import STALE
 from evolvent_meshes.arrays import Floats
@@ -53,19 +53,19 @@ def misaligned_on(model: GearModel, shared: SharedPosition) -> SharedPosition | 
     return SharedPosition(contact, system, smooth, unsearched)
 
 
-def _misaligned(geometry: ContactGeometry, tooth: ToothContact, stand: Stand) -> ToothContact:
+def _misaligned(geometry: ContactGeometry, tooth: ToothContact, stand: PairRotation) -> ToothContact:
     """A tooth pair with the gap that the wheel's motion to another stand leaves."""
     return replace(tooth, operator=tooth.operator.before(_moved(geometry, tooth, stand)))
 
 
-def _farthest(geometry: ContactGeometry, stand: Stand) -> float:
+def _farthest(geometry: ContactGeometry, stand: PairRotation) -> float:
     """Largest distance [mm] by which the gap changes."""
     normals = [t.operator.shape @ t.operator.frames[:, 0] for t in geometry.teeth]
     moved = [_moved(geometry, t, stand) for t in geometry.teeth]
     return max(float(np.abs(np.einsum("qa,qa->q", n, u)).max()) for n, u in zip(normals, moved))
 
 
-def _moved(geometry: ContactGeometry, tooth: ToothContact, stand: Stand) -> Floats:
+def _moved(geometry: ContactGeometry, tooth: ToothContact, stand: PairRotation) -> Floats:
     """Displacement (q, d) [mm] of the wheel at the points of a tooth pair, as it moves to another stand."""
     wheel, d = geometry.bodies[Member.WHEEL], geometry.d
     points, pairs = wheel.flank.points, tooth.pairing

@@ -108,7 +108,8 @@ class _RankedSweep:
             del mine  # a matrix is in the shared memory
             if prepared is not None:
                 course = course_after(self.model, prepared, place.course)
-                place = replace(place, extra=prepared.contact.stand.extra, patch=prepared.patch, course=course)
+                found = prepared.contact.stand.beyond_nominal
+                place = replace(place, beyond_nominal=found, patch=prepared.patch, course=course)
             if solved is not None:
                 state = solved.state
                 yield solved
@@ -133,8 +134,8 @@ class _RankedSweep:
         try:
             angle, threads = self.pitch.angles[number], self.cores.used
             known = self.known.get(number)
-            extra = state.predicted(angle)
-            return shared_position(self.model, angle, extra, self.frictions, state.patch, threads, known)
+            predicted = state.predicted(angle)
+            return shared_position(self.model, angle, predicted, self.frictions, state.patch, threads, known)
         except (NotConverged, SearchError):  # smaller steps may lead there
             return None
 

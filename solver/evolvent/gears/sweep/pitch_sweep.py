@@ -45,22 +45,22 @@ NONE_KNOWN: Mapping[int, KnownSolution] = MappingProxyType({})
 class SweepState:
     """State of a sweep from which the next position starts.
 
-    extra: rotations of pinion and wheel beyond the nominal ones, where the last search was [rad].
+    beyond_nominal: rotations of pinion and wheel beyond the nominal ones, where the last search was [rad].
     histories: friction history of each coefficient that was solved with.
     patch: the last contact patch, None where it is not known.
     course: of the free rotation, None where it is not known.
 
-    Without extra, patch and course the next position is the same, but takes more searches and iterations.
+    Without beyond_nominal, patch and course the next position is the same, but takes more searches and iterations.
     """
 
-    extra: tuple[float, float]
+    beyond_nominal: tuple[float, float]
     histories: Histories
     patch: ContactPatch | None = None
     course: RotationCourse | None = None
 
     def predicted(self, angle: float) -> tuple[float, float]:
         """Rotations beyond the nominal ones from which the search at a pinion angle starts [rad]."""
-        return self.extra if self.course is None else self.course.at(angle)
+        return self.beyond_nominal if self.course is None else self.course.at(angle)
 
     def of(self, coefficients: Bools) -> SweepState:
         """Sweep state of some of its friction coefficients, (frictions,) bool."""
@@ -195,7 +195,7 @@ def _position(
         seconds = spent / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
     course = course_after(model, shared, state.course)
-    after = SweepState(shared.contact.stand.extra, tuple(updated), shared.patch, course)
+    after = SweepState(shared.contact.stand.beyond_nominal, tuple(updated), shared.patch, course)
     guesses = {each.friction: InitialGuess.of(each.equilibrium) for each in solved}
     return SweptPosition(
         angle, tuple(results), after, known=KnownSolution(shared.searched, InitialGuess.of(shared.smooth), guesses)

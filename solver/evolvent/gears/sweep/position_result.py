@@ -13,7 +13,7 @@ from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.contact_points import ContactPoints, contact_points
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
 
@@ -41,7 +41,7 @@ class PositionResult:
     seconds: wall time.
     """
 
-    stand: Stand
+    stand: PairRotation
     friction: float
     torques: tuple[float, float]
     contact: ContactPoints
@@ -105,7 +105,7 @@ def position_result(
         stand=stand,
         friction=friction,
         torques=(torques[0], torques[1]),
-        contact=contact_points(geometry, equilibrium.traction, friction, stand.extra),
+        contact=contact_points(geometry, equilibrium.traction, friction, stand.beyond_nominal),
         tooth=geometry.tooth,
         node=geometry.node,
         weights=weights,

@@ -23,7 +23,7 @@ from evolvent.gears.contact.overlap_check import UnsearchedOverlap, overlap_outs
 from evolvent.gears.contact.pair_contact import GearContact, gear_contact
 from evolvent.gears.contact.tangent_stiffness import tangent_stiffness
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent_meshes.arrays import Bools
 from evolvent_meshes.gears.member import Member
@@ -51,12 +51,12 @@ class SearchedAt:
     """Angle, rotations and window with which a position was searched.
 
     angle: of the pinion [rad].
-    extra: rotations of pinion and wheel beyond the nominal ones [rad].
+    beyond_nominal: rotations of pinion and wheel beyond the nominal ones [rad].
     half_width: of the window [mm of profile arc].
     """
 
     angle: float
-    extra: tuple[float, float]
+    beyond_nominal: tuple[float, float]
     half_width: float
 
 
@@ -65,25 +65,25 @@ class RotationCourse:
     """Free rotation of the equilibrium from position to position, to predict where a search starts.
 
     angle: of the pinion at the last position [rad].
-    extra: rotations of pinion and wheel there beyond the nominal ones, in equilibrium without friction [rad].
+    beyond_nominal: rotations of pinion and wheel there beyond the nominal ones, in equilibrium without friction [rad].
     rate: their change per rotation of the pinion; 0 where there is no position before.
     """
 
     angle: float
-    extra: tuple[float, float]
+    beyond_nominal: tuple[float, float]
     rate: tuple[float, float] = (0.0, 0.0)
 
     def at(self, angle: float) -> tuple[float, float]:
         """Rotations of pinion and wheel [rad] at a pinion angle, on a straight line through the last two positions."""
-        pinion, wheel = (value + rate * (angle - self.angle) for value, rate in zip(self.extra, self.rate))
+        pinion, wheel = (value + rate * (angle - self.angle) for value, rate in zip(self.beyond_nominal, self.rate))
         return pinion, wheel
 
-    def followed_by(self, angle: float, extra: tuple[float, float]) -> RotationCourse:
+    def followed_by(self, angle: float, beyond_nominal: tuple[float, float]) -> RotationCourse:
         """Course of the free rotation after one more position."""
         if angle == self.angle:
-            return RotationCourse(angle, extra, self.rate)
-        pinion, wheel = ((new - old) / (angle - self.angle) for new, old in zip(extra, self.extra))
-        return RotationCourse(angle, extra, (pinion, wheel))
+            return RotationCourse(angle, beyond_nominal, self.rate)
+        pinion, wheel = ((new - old) / (angle - self.angle) for new, old in zip(beyond_nominal, self.beyond_nominal))
+        return RotationCourse(angle, beyond_nominal, (pinion, wheel))
 
 
 @dataclass(frozen=True)
@@ -131,34 +131,35 @@ class SharedPosition:
     @property
     def searched(self) -> SearchedAt:
         """Angle, rotations and window of the search."""
-        return SearchedAt(self.contact.stand.angle, self.contact.stand.extra, self.contact.geometry.half_width)
+        return SearchedAt(self.contact.stand.angle, self.contact.stand.beyond_nominal, self.contact.geometry.half_width)
 
 
 def shared_position(
-    model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: ContactPatch | None,
-    threads: Threads = nullcontext, known: KnownSolution | None = None, exact: bool = False,
+    model: GearModel, angle: float, beyond_nominal: tuple[float, float], frictions: Sequence[float],
+    before: ContactPatch | None, threads: Threads = nullcontext, known: KnownSolution | None = None,
+    exact: bool = False,
 ) -> SharedPosition:
     """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
     angle: of the pinion [rad].
-    extra: predicted rotations beyond the nominal ones [rad].
+    beyond_nominal: predicted rotations beyond the nominal ones [rad].
     frictions: the coefficients to come; without one that is not 0 only normal components are condensed.
     before: the contact patch of the last position, None where there is none.
     threads: in which compliances are put together.
-    known: how it was solved before, None where it was not; it replaces extra and before.
+    known: how it was solved before, None where it was not; it replaces beyond_nominal and before.
 
     exact: solve the frictionless state to the end, also where no coefficient has it for its result; else to `START`.
 
     Raises NotConverged, SearchError.
     """
     normal_only, tolerance = not any(map(model.has_friction_terms, frictions)), _tolerance(model, frictions, exact)
-    stand, half_width = _at_a_multiple(model, Stand(model.pair, angle, extra)), model.half_width
+    stand, half_width = _at_a_multiple(model, PairRotation(model.pair, angle, beyond_nominal)), model.half_width
     if known is not None:
-        stand, half_width = Stand(model.pair, angle, known.searched.extra), known.searched.half_width
-    been = set() if known is None else {known.searched.extra}
+        stand, half_width = PairRotation(model.pair, angle, known.searched.beyond_nominal), known.searched.half_width
+    been = set() if known is None else {known.searched.beyond_nominal}
     for _ in range(ROUNDS):
-        nearest = NEAREST_AGAIN if stand.extra in been else NEAREST
-        been.add(stand.extra)
+        nearest = NEAREST_AGAIN if stand.beyond_nominal in been else NEAREST
+        been.add(stand.beyond_nominal)
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.geometry.teeth:
             raise NotConverged(
@@ -193,7 +194,7 @@ def shared_position(
 
 def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float]) -> SharedPosition:
     """A position searched at a given place, once. Raises NotConverged, SearchError."""
-    stand = Stand(model.pair, place.angle, place.extra)
+    stand = PairRotation(model.pair, place.angle, place.beyond_nominal)
     contact = gear_contact(model.bodies, stand, list(model.teeth), place.half_width)
     normal_only = not any(map(model.has_friction_terms, frictions))
     system = contact.system(model.load.on, model.load.at(place.angle), normal_only)
@@ -216,8 +217,8 @@ def free_rotation(model: GearModel, equilibrium: Equilibrium) -> tuple[float, fl
 def course_after(model: GearModel, shared: SharedPosition, before: RotationCourse | None) -> RotationCourse:
     """The course of the free rotation with this position; before: without it."""
     stand, (pinion, wheel) = shared.contact.stand, free_rotation(model, shared.smooth)
-    extra = stand.extra[0] + pinion, stand.extra[1] + wheel
-    return RotationCourse(stand.angle, extra) if before is None else before.followed_by(stand.angle, extra)
+    found = stand.beyond_nominal[0] + pinion, stand.beyond_nominal[1] + wheel
+    return RotationCourse(stand.angle, found) if before is None else before.followed_by(stand.angle, found)
 
 
 def free_shift(model: GearModel, equilibrium: Equilibrium) -> float:
@@ -225,11 +226,11 @@ def free_shift(model: GearModel, equilibrium: Equilibrium) -> float:
     return float(equilibrium.motion[0]) * model.bodies[model.load.on].gear.base_radius
 
 
-def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
+def _at_a_multiple(model: GearModel, stand: PairRotation) -> PairRotation:
     """The nearest stand at which searches are made."""
     on = model.load.on
     step = 2.0 * RELOCATE * model.pair.pinion.normal_module / model.bodies[on].gear.base_radius
-    return stand.turned(on, float(np.round(stand.extra[on] / step)) * step - stand.extra[on])
+    return stand.turned(on, float(np.round(stand.beyond_nominal[on] / step)) * step - stand.beyond_nominal[on])
 
 
 def _initially_pressed(geometry: ContactGeometry, before: ContactPatch | None) -> Bools:

@@ -43,7 +43,7 @@ def work_beyond_nominal(
 
 def _beyond_nominal(geometry: ContactGeometry, before: PreviousJump) -> Floats:
     """Change (n, d−1) of the free rotations up to the search, and minus the previous elastic jump [mm]."""
-    turned = [geometry.stand.extra[gear] - before.stand.extra[gear] for gear in Member]
+    turned = [geometry.stand.beyond_nominal[gear] - before.stand.beyond_nominal[gear] for gear in Member]
     return sum(spin[:, 1:] * angle for spin, angle in zip(geometry.spins, turned)) - before.jump[:, 1:]
 
 

@@ -14,8 +14,8 @@ from evolvent.contact.two_level.split_counts import split_counts
 from evolvent.fem.material import Material
 from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.two_level.flank_lattice import FlankLattice
+from evolvent.gears.two_level.level_patches import Block, BlockResponse, LevelPatches, Response, reach_of
 from evolvent.gears.two_level.refined_level import RefinedLevel
-from evolvent.gears.two_level.towers import Block, BlockResponse, Response, Towers, reach_of
 from evolvent_meshes.arrays import Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -60,7 +60,9 @@ def coarse_body(gear: GearParameters, mesh: MeshData, material: Material, level:
     return CoarseBody(mesh, material, "flank", counts, partial(on_flank, gear))
 
 
-def towers_of(refinement: FlankRefinement, counts: Sequence[int], flux_safety: float | None) -> list[Towers]:
+def patches_of_levels(
+    refinement: FlankRefinement, counts: Sequence[int], flux_safety: float | None
+) -> list[LevelPatches]:
     """The patches of each level, from the coarsest to the finest.
 
     counts: after how many levels contact is computed: all, or on the same flank under heavier loads fewer.
@@ -69,7 +71,7 @@ def towers_of(refinement: FlankRefinement, counts: Sequence[int], flux_safety: f
     gear, result = refinement.gear, []
     for count, body in enumerate(refinement.bodies(), 1):
         safety, is_followed = flux_safety if count in counts else None, count < max(counts)
-        result.append(Towers(body, gear.base_radius, gear.twist, HELD, safety, is_followed))
+        result.append(LevelPatches(body, gear.base_radius, gear.twist, HELD, safety, is_followed))
     return result
 
 
@@ -77,11 +79,11 @@ def towers_of(refinement: FlankRefinement, counts: Sequence[int], flux_safety: f
 class RefinedFlank:
     """The levels of a flank, from the responses of the patches of each.
 
-    towers: of each level.
+    patches: of each level.
     responses: of the patches of each.
     """
 
-    towers: Sequence[Towers]
+    patches: Sequence[LevelPatches]
     responses: Sequence[Mapping[Block, BlockResponse]]
 
     def levels(self, counts: Sequence[int]) -> dict[int, list[RefinedLevel]]:
@@ -97,10 +99,10 @@ class RefinedFlank:
 
     def _level(self, number: int, part: Callable[[BlockResponse], Response]) -> RefinedLevel:
         """One of the levels. part: the response that it takes of each patch."""
-        here = self.towers[number]
+        here = self.patches[number]
         transfer = here.surface.transfer
         if number > 0:
-            before = self.towers[number - 1].surface
+            before = self.patches[number - 1].surface
             transfer = transfer @ _reordered(before.numbers(here.coarse.points))
         correction = here.correction({block: part(each) for block, each in self.responses[number].items()})
         return RefinedLevel(transfer.tocsr(), correction, here.surface.surface.normals)

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep.friction_history import FrictionHistory
 from evolvent.gears.sweep.periodic_pitch import one_pitch
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
@@ -26,8 +26,8 @@ from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.position_arrays import archived_result, result_arrays
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Arrays, Store, read_as
-from evolvent.scene.differences import charts, differences, essence
-from evolvent.scene.scene import Scene, SceneError, derived_values, load_scene
+from evolvent.scene.differences import differences, identity
+from evolvent.scene.scene import Scene, SceneError, kept_scene
 from evolvent_meshes.gears.pair import GearPair
 
 STATE, IN_POSITION = "state.npz", "state/"
@@ -127,7 +127,7 @@ class Archive:
         """The scene to which the archive belongs, by its difference to this one, from OUT/scene.toml."""
         path = self.out / "scene.toml"
         try:
-            difference = differences(load_scene(path), self.scene)
+            difference = differences(kept_scene(path), self.scene)
         except SceneError:
             return f"another one, or of another version of Evolvent ({path} cannot be read)"
         if difference:
@@ -141,9 +141,7 @@ class Archive:
 def fingerprint(scene: Scene) -> str:
     """SHA-256 of all that the results depend on: the scene's values without its title and output section, and the
     contents, not the paths, of its flank charts."""
-    bare = essence(scene)
-    values = json.dumps([bare.model_dump(mode="json"), derived_values(bare), *charts(scene)])
-    return hashlib.sha256(values.encode()).hexdigest()
+    return hashlib.sha256(json.dumps(identity(scene)).encode()).hexdigest()
 
 
 def _shape(arrays: Arrays, name: str) -> GearShape:
@@ -172,11 +170,11 @@ def _position(arrays: Arrays, pair: GearPair) -> SweptPosition:
 
 def state_arrays(state: SweepState, start: str) -> Arrays:
     """The state of a sweep as arrays whose names begin with `start`."""
-    arrays: Arrays = {f"{start}extra": np.array(state.extra), f"{start}memories": len(state.histories)}
+    arrays: Arrays = {f"{start}extra": np.array(state.beyond_nominal), f"{start}memories": len(state.histories)}
     for i, history in enumerate(state.histories):
         if history is not None:
             named = {
-                "angle": history.stand.angle, "extra": np.array(history.stand.extra),
+                "angle": history.stand.angle, "extra": np.array(history.stand.beyond_nominal),
                 "pinion_rows": history.rows[0], "wheel_rows": history.rows[1],
                 "pinion_forces": history.forces[0], "wheel_forces": history.forces[1], "flux": history.flux,
             }
@@ -196,7 +194,7 @@ def sweep_state(arrays: Arrays, start: str, pair: GearPair) -> SweepState:
 
 def _history(arrays: Arrays, start: str, pair: GearPair) -> FrictionHistory:
     extra = arrays[start + "extra"]
-    stand = Stand(pair, float(arrays[start + "angle"]), (float(extra[0]), float(extra[1])))
+    stand = PairRotation(pair, float(arrays[start + "angle"]), (float(extra[0]), float(extra[1])))
     rows = arrays[start + "pinion_rows"], arrays[start + "wheel_rows"]
     forces = arrays[start + "pinion_forces"], arrays[start + "wheel_forces"]
     return FrictionHistory(stand, rows, forces, arrays[start + "flux"])

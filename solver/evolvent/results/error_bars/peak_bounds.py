@@ -4,7 +4,7 @@
 smooth top a quarter as high; the curve counts as smooth in proportion to its bends at the neighbouring samples. Where
 the lines do not intersect the curve jumps, as pressures nearly do, on average in the middle.
 
-`beside_largest` bounds it beside the largest sample, where further positions are solved until nothing is left. Root
+`peak_bounds` bounds it beside the largest sample, where further positions are solved until nothing is left. Root
 stress over the rotation has kinks where a neighbour takes over load or gives it up, and little curvature between them:
 it is at most where both lines cross, which of a concave curve is a bound. Under a light load a neighbour takes over
 within a small part of an interval: the stress rises slowly and then falls in a jump, and the steep line says nothing of
@@ -38,7 +38,7 @@ Samples = tuple[Floats, Floats]
 class PossiblePeak:
     """A peak that a curve may have between two of its points."""
 
-    place: float
+    angle: float
     """Abscissa of the peak, between two points."""
     height: float
     """Largest value that the curve may have there."""
@@ -80,7 +80,7 @@ def roundness(slope: Floats) -> Floats:
     return np.where(within > 0.0, np.minimum(1.0, beside / np.where(within > 0.0, within, 1.0)), 0.0)
 
 
-def beside_largest(x: Floats, y: Floats) -> Iterator[PossiblePeak]:
+def peak_bounds(x: Floats, y: Floats) -> Iterator[PossiblePeak]:
     """Possible peaks between the largest of the points (k,) and its neighbours, as far as two points lie on either
     side. x: ascending."""
     largest = int(np.argmax(y))

@@ -57,10 +57,10 @@ def _about_the_load(run: RunData) -> Iterator[str]:
     given = run.scene.dynamics
     if given is not None and given.operating_rpm is not None:
         yield (
-            f"The load is the mesh force of the vibration at {given.operating_rpm:g} r/min, running {given.coming} to "
-            "it: pressures, line loads and the transmission error, which is that at rest, are under the force of each "
-            "position; Hertz's formula and the mean line load beside them are under the torque. Error bars are without "
-            "that of the force."
+            f"The load is the mesh force of the vibration at {given.operating_rpm:g} r/min, running {given.direction} "
+            "to it: pressures, line loads and the transmission error, which is that at rest, are under the force of "
+            "each position; Hertz's formula and the mean line load beside them are under the torque. Error bars are "
+            "without that of the force."
         )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from evolvent.gears.load_list import LoadList
+from evolvent.gears.shared_gears import SharedGears
 from evolvent.results.archive.archive import Archive
 from evolvent.results.figures.loads_picture import LOADS_PICTURE
 from evolvent.results.tables.load_table import LOADS, RUNS, load_results
@@ -55,7 +55,7 @@ class Loads(Computation[None]):
         """Computes the runs; those that are complete stay. Collective; raises what `compute` does."""
         call.on_first(lambda: self._check_folders(call))
         call.on_first(lambda: call.begin(self.scene, resumed=call.resume))
-        gears = LoadList([gear_problem(run.scene) for run in self.runs.values()])
+        gears = SharedGears([gear_problem(run.scene) for run in self.runs.values()])
         for name, run in self.runs.items():
             compute(run, call.folder.out / name, replace(call.options, prepare=gears.prepare, label=name))
 

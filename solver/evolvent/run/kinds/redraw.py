@@ -12,7 +12,7 @@ from evolvent.results.drawing.picture_files import Drawn, draw
 from evolvent.run.computation import Computation
 from evolvent.run.folder_checks import STUDY, begun_command, changed_files
 from evolvent.run.kinds.all import kind_of
-from evolvent.scene.scene import load_scene
+from evolvent.scene.scene import kept_scene
 
 
 def plot_folder(out: Path) -> Drawn:
@@ -41,7 +41,7 @@ def _finished(out: Path) -> Computation[object]:
     if not command:
         found = "no results in it" if os.path.isdir(out) else "no such directory"
         raise _nothing_to_draw(out, found, f"run `evolvent run SCENE.toml --out {out}` first")
-    scene = load_scene(out / "scene.toml")
+    scene = kept_scene(out / "scene.toml")
     what: Computation[object] = kind_of(command, scene).load().of(scene)
     if not (out / what.outputs.tables[0]).is_file():
         found = f"results of `evolvent {command}`, but no {what.outputs.tables[0]}"

@@ -128,7 +128,7 @@ class Run(Computation[SolvedRun]):
         scene, archive = solved.scene, solved.archive
         data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
         data = with_errors(data, archive, solved.companion)
-        mended = [ON_DEFLECTED] if scene.skip != self.scene.skip else []
+        mended = [ON_DEFLECTED] if scene.exact != self.scene.exact else []
         cost = call.cost(replace(solved.timings, total=call.seconds), solved.memory_MB)
         content = summary(data, facts_of(data, solved.meshes, call.comm.size, cost), mended)
         tables = [*(_own_tables(content)), *(_of_operation(scene, solved.operation))]
@@ -208,7 +208,7 @@ def _of_operation(scene: Scene, operation: Operation | None) -> list[Filled]:
         return []
     assert scene.dynamics is not None
     loaded = gear_problem(scene)
-    return operation_tables(operation, scene.dynamics.coming, loaded.pair.gears[loaded.torque_on].base_radius)
+    return operation_tables(operation, scene.dynamics.direction, loaded.pair.gears[loaded.torque_on].base_radius)
 
 
 def _about_operation(operation: Operation | None) -> Iterator[str]:

@@ -13,7 +13,7 @@ from evolvent.dynamics.excitation.misaligned_mesh import misaligned_figures
 from evolvent.dynamics.of_scene import check_positions
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.load_list import LoadList
+from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
@@ -33,7 +33,7 @@ def line_name(task: SceneTask) -> str:
     return task.scene.model_copy(update={"pair": pair}).model_dump_json()
 
 
-def solve_line(tasks: Sequence[SceneTask], gears: LoadList) -> list[SceneRecord]:
+def solve_line(tasks: Sequence[SceneTask], gears: SharedGears) -> list[SceneRecord]:
     """Computes scenes of one `line_name`, as `solve` does each. Where their positions cannot be solved together, each
     scene solves its own. gears: condensed for all of them."""
     missing = [task for task in tasks if read_record(task.folder) is None]
@@ -43,7 +43,7 @@ def solve_line(tasks: Sequence[SceneTask], gears: LoadList) -> list[SceneRecord]
     return [solve(task, gears) for task in tasks]
 
 
-def _keep_positions(tasks: Sequence[SceneTask], gears: LoadList) -> None:
+def _keep_positions(tasks: Sequence[SceneTask], gears: SharedGears) -> None:
     """Archives solved positions in the scenes' folders, from which each excitation resumes. tasks: at ascending
     misalignments. Raises what `compute` does."""
     first, loads = tasks[0].scene, [own_torque(task.scene) for task in tasks]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 from dataclasses import dataclass
 
-from evolvent.gears.load_list import LoadList
+from evolvent.gears.shared_gears import SharedGears
 from evolvent.run.study.misalignment_line import solve_line
 from evolvent.run.study.results.scene_record import SceneRecord
 from evolvent.run.study.scene_task import condense, solve
@@ -26,7 +26,7 @@ class Condense:
     deaths: int = 0
     """Worker processes that ended unexpectedly at this order."""
 
-    def carried_out(self, gears: LoadList | None) -> tuple[LoadList | None, Answer]:
+    def carried_out(self, gears: SharedGears | None) -> tuple[SharedGears | None, Answer]:
         """Carries out the order. Returns the gears that the worker holds from then on, and the answer. gears: those
         that it held before."""
         made = condense(self.tasks)
@@ -42,7 +42,7 @@ class Keep:
     deaths: int = 0
     """Worker processes that ended unexpectedly at this order."""
 
-    def carried_out(self, gears: LoadList | None) -> tuple[LoadList | None, Answer]:
+    def carried_out(self, gears: SharedGears | None) -> tuple[SharedGears | None, Answer]:
         """Carries out the order. Returns the gears that the worker holds from then on, and the answer. gears: those
         that it held before."""
         return pickle.loads(self.gears), None
@@ -59,7 +59,7 @@ class Solve:
     deaths: int = 0
     """Worker processes that ended unexpectedly at this order."""
 
-    def carried_out(self, gears: LoadList | None) -> tuple[LoadList | None, Answer]:
+    def carried_out(self, gears: SharedGears | None) -> tuple[SharedGears | None, Answer]:
         """Carries out the order. Returns the gears that the worker holds from then on, and the answer. gears: those
         that it held before."""
         if self.on_kept_gears:

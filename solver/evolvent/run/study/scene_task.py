@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from evolvent.check.problem_size import MEMORY_OF, memory_megabytes, require_memory
 from evolvent.gears.gear_model import Preparer, prepare_model
-from evolvent.gears.load_list import LoadList
+from evolvent.gears.shared_gears import SharedGears
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.archive.store import ArchiveError
@@ -52,18 +52,18 @@ class SceneTask:
     """Number of scenes that are computed at once on a machine; 0: its memory is not checked."""
 
 
-def condense(tasks: Sequence[SceneTask]) -> LoadList:
+def condense(tasks: Sequence[SceneTask]) -> SharedGears:
     """Gears that some scenes share, condensed. Those that cannot be condensed are left out: each scene then fails by
     itself, with its own reason."""
     compute, first = tasks[0].compute, tasks[0].scene
-    gears = LoadList([condensed_problem(task.scene, compute) for task in tasks])
+    gears = SharedGears([condensed_problem(task.scene, compute) for task in tasks])
     for mesh in meshes(first, compute):
         with contextlib.suppress(EvolventError):
             gears.prepare(condensed_problem(first, compute), MPI.COMM_SELF, mesh)
     return gears
 
 
-def solve(task: SceneTask, gears: LoadList | None = None) -> SceneRecord:
+def solve(task: SceneTask, gears: SharedGears | None = None) -> SceneRecord:
     """Computes a scene in its folder, and leaves a record there where a repetition would find the same: it is done, or
     fails by its input or without a reliable result. gears: condensed for it, None: it condenses its own."""
     begin, warnings, reason, lasting = time.perf_counter(), [], "", True

@@ -98,7 +98,7 @@ class DynamicsSection(SceneSection):
         "damping of the mesh over the critical one, at the mean stiffness with what gives way in series",
         "a number from 0.001 to 1", "gear pairs have 0.02 to 0.1", default=0.05, ge=1e-3, le=1,
     )
-    damped_apart: bool = key(
+    damping_in_separation: bool = key(
         "whether it acts in free flight, too, as in the model of He et al. 2022", "true or false", default=False
     )
     ground_damping_ratio: float = key(
@@ -128,9 +128,9 @@ class DynamicsSection(SceneSection):
         f"a number above 0 up to {FASTEST:g}, in r/min", "delete the key for the default", default=None, gt=0,
         le=FASTEST,
     )
-    coming: Literal["up", "down"] = key(
+    approach: Literal["run_up", "run_down"] = key(
         "from which side the pair has come to that speed, where its vibration depends on it: running up or down",
-        '"up" or "down"', needs=("operating_rpm",), default="up",
+        '"run_up" or "run_down"', needs=("operating_rpm",), default="run_up",
     )
 
     histories_rpm: tuple[float, ...] = key(
@@ -175,6 +175,11 @@ class DynamicsSection(SceneSection):
         "without tip relief the relief that wear gives them; by default there is none",
         "a number from 100 to 3000, in MPa", "ISO 6336-5 has it", default=None, ge=100, le=3000,
     )
+
+    @property
+    def direction(self) -> Literal["up", "down"]:
+        """Direction in which the speed changes until the pair runs at `operating_rpm`."""
+        return "up" if self.approach == "run_up" else "down"
 
     @field_validator("speed_rpm", "torque_percents", "histories_rpm", "map_percents", mode="before")
     @classmethod

@@ -1,4 +1,4 @@
-"""Sections [output] and [skip]: the files that a run writes, and shortcuts that it must not take."""
+"""Sections [output] and [exact]: the files that a run writes, and simplifications that it must not make."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ class OutputSection(SceneSection):
 SkipName = Literal["plane", "friction-terms", "one-pitch", "one-sector", "far-teeth", "window",
                    "deflected-flanks", "coarse-body", "two-level", "reuse", "error-bars", "fields",
                    "pictures"]
-"""Shortcuts that a run takes where its scene allows them: `evolvent.scene.skips`."""
+"""Simplifications that a run makes where its scene allows them: `evolvent.scene.skips`."""
 SKIP_NAMES: tuple[SkipName, ...] = get_args(SkipName)
 
 
-class SkipSection(SceneSection):
-    """[skip]: shortcuts that are switched off; for tests and benchmarks."""
+class ExactSection(SceneSection):
+    """[exact]: parts that are computed without their simplification; for tests and benchmarks."""
 
-    off: Annotated[tuple[SkipName, ...], BeforeValidator(as_tuple)] = key(
-        "skips that are switched off: what they leave out is computed the long way",
+    parts: Annotated[tuple[SkipName, ...], BeforeValidator(as_tuple)] = key(
+        "parts that are computed without their simplification",
         f"a list of {', '.join(SKIP_NAMES)}",
         "give names of this list; `evolvent check` tells which ones apply to the scene",
         default=(),
     )
 
-    @field_validator("off")
+    @field_validator("parts")
     @classmethod
     def _each_once(cls, names: tuple[SkipName, ...]) -> tuple[SkipName, ...]:
         """Sorts the names, so that scenes with the same names are equal."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.results.error_bars.compared import ROOT_STRESS, Compared, Curve
-from evolvent.results.error_bars.peak_bounds import beside_largest
+from evolvent.results.error_bars.peak_bounds import peak_bounds
 from evolvent.strength.root_passage import GearRoots
 from evolvent_meshes.arrays import Floats
 
@@ -63,4 +63,4 @@ def value_errors(fine: Curve, rough: Curve, order: int) -> Floats:
 def _spacing_error(curve: Curve) -> float:
     """Amount by which the curve may be higher between its positions than at the highest of them."""
     largest = float(curve.values.max())
-    return max([0.0, *(each.height - largest for each in beside_largest(curve.angle, curve.values))])
+    return max([0.0, *(each.height - largest for each in peak_bounds(curve.angle, curve.values))])

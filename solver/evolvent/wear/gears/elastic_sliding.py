@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.contact.contact_points import ContactPoints
-from evolvent.gears.kinematics import Stand, line_of_action
+from evolvent.gears.kinematics import PairRotation, line_of_action
 from evolvent.wear.archard import grid_interval
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent_meshes.arrays import Bools, Floats, Ints
@@ -61,7 +61,7 @@ class Deflection:
 
     @staticmethod
     def of(
-        bodies: tuple[GearBody, GearBody], stand: Stand, rows: tuple[Ints, Ints], forces: Both, grids: Grids
+        bodies: tuple[GearBody, GearBody], stand: PairRotation, rows: tuple[Ints, Ints], forces: Both, grids: Grids
     ) -> Deflection:
         """The deflection under forces (m, d) [N; N/mm in 2D], in the gear's frame, on rows (m, 2), tooth and node, of
         each gear. The pinion's displacements are those of the extended trace of contact_operator.py."""
@@ -95,7 +95,7 @@ class PitchDeflection:
 
     grids: Grids
     step: float
-    stands: tuple[Stand, ...]
+    stands: tuple[PairRotation, ...]
     deflections: Mapping[int, Deflection]
     worn: tuple[Floats | None, Floats | None]
 
@@ -122,7 +122,7 @@ class PitchDeflection:
     @cached_property
     def _rotation_rates(self) -> Floats:
         """Rates ε' (2, positions) of the gears' rotations by deflection [rad/rad]."""
-        ε = np.array([stand.extra for stand in self.stands]).T
+        ε = np.array([stand.beyond_nominal for stand in self.stands]).T
         return np.asarray((np.roll(ε, -1, axis=1) - np.roll(ε, 1, axis=1)) / (2.0 * self.step))
 
     def _rows(self, k: Ints, tooth: Ints) -> Ints:

@@ -227,9 +227,9 @@ class GearWear:
             shared = worn_on(model, old, pressed.get(k)) if old is not None else None
             if shared is None:
                 near = old or (positions[-1] if positions else None)
-                extra = (0.0, 0.0) if near is None else near.contact.stand.extra
+                known = (0.0, 0.0) if near is None else near.contact.stand.beyond_nominal
                 patch = None if near is None else near.patch
-                shared = shared_position(model, self.pitch.angles[k], extra, [self.friction], patch, exact=True)
+                shared = shared_position(model, self.pitch.angles[k], known, [self.friction], patch, exact=True)
                 searched += 1
             positions.append(shared)
         return positions, searched

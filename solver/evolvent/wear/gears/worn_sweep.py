@@ -145,7 +145,7 @@ class WornSweep:
 
     def _smooth_points(self, model: GearModel, shared: SharedPosition) -> ContactPoints:
         stand = shared.contact.stand.turned(model.load.on, float(shared.smooth.motion[0]))
-        return contact_points(shared.contact.geometry, shared.smooth.traction, 0.0, stand.extra)
+        return contact_points(shared.contact.geometry, shared.smooth.traction, 0.0, stand.beyond_nominal)
 
     def _with_elastic_sliding(
         self, points: Sequence[ContactPoints], pitch: PitchDeflection

@@ -84,7 +84,7 @@ def _vibration(arrays: Mapping[str, Any]) -> Vibration | None:
 
 def _places(searches: Sequence[SearchedAt]) -> Floats:
     """Places (n, 4) of the searches: angle, rotations beyond the nominal ones and half-width."""
-    return np.array([(s.angle, *s.extra, s.half_width) for s in searches]).reshape(-1, 4)
+    return np.array([(s.angle, *s.beyond_nominal, s.half_width) for s in searches]).reshape(-1, 4)
 
 
 def _searches(places: Floats) -> tuple[SearchedAt, ...]:
@@ -123,6 +123,6 @@ def write_pitch(
     """Writes a pitch at one friction coefficient as a run without wear does. Raises OSError."""
     archive.write_gears(shapes)
     for k, result in enumerate(results):
-        state = SweepState(result.stand.extra, (None,))
+        state = SweepState(result.stand.beyond_nominal, (None,))
         position = SweptPosition(result.stand.angle, (result,), state, closes=k == len(results) - 1)
         archive.write_position(k, position)

@@ -16,7 +16,7 @@ from evolvent.results.archive.store import ArchiveError
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.table import Record
-from evolvent.scene.scene import GEARS, Scene, load_scene
+from evolvent.scene.scene import GEARS, Scene, kept_scene
 from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow
 from evolvent.wear.results.archive import read_checkpoint, worn_folder
@@ -150,7 +150,7 @@ class WornRun:
 
 def read_worn(folder: Path) -> WornRun:
     """The finished study in `folder`. Raises SceneError; ArchiveError where there is none."""
-    scene = load_scene(folder / "scene.toml")
+    scene = kept_scene(folder / "scene.toml")
     study = read_checkpoint(Archive(folder, scene))
     if scene.wear is None or study is None or study.cycles < scene.wear.cycles:
         found = "a scene without [wear]" if scene.wear is None else "one that has not reached its last report"

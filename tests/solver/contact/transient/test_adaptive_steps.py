@@ -18,7 +18,7 @@ from evolvent import (
     InitialState,
     InputError,
     Material,
-    Moment,
+    MotionState,
     Problem,
     Rigid,
     Step,
@@ -29,7 +29,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.transient import solver
 from evolvent.contact.transient.adaptive_steps import StepLengths
 from evolvent.contact.transient.one_step import SolvedStep
-from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, LinearSystem, TimeScheme, TimeStep
 from evolvent_meshes.shapes.blocks import rectangle
 
 DENSITY, LOAD, DRIVE = 7.85e-9, 10.0, 2e4  # t/mm³, N/mm, rad/s
@@ -82,7 +82,7 @@ def test_the_estimate_is_the_error_of_a_step(spectral_radius: float) -> None:
     cos(t + h) by c h² (a_{n+1} − a_n), within 2 % at h = 0.01."""
     scheme, t, h = TimeScheme(spectral_radius), 1.0, 0.01
     system = LinearSystem(np.eye(1), np.zeros(1), np.ones(1))
-    at = MotionState(*(np.array([x]) for x in (np.cos(t), -np.sin(t), -np.cos(t + scheme.alpha * h))))
+    at = KinematicState(*(np.array([x]) for x in (np.cos(t), -np.sin(t), -np.cos(t + scheme.alpha * h))))
     step = TimeStep(system, scheme, at, h)
     after = step.after(np.linalg.solve(step.matrix, step.known))
     estimate = scheme.error_constant * h**2 * (after.acceleration - at.acceleration)
@@ -188,7 +188,7 @@ def test_a_run_ends_where_it_is_to(end: float, lengths: list[float]) -> None:
     h = 1e-6
     run = Transient(lifted(), TransientSettings(h, 0))
 
-    def moments() -> Iterator[Moment]:
+    def moments() -> Iterator[MotionState]:
         return run.run_until(end * h)
 
     assert [moment.length / h for moment in moments()] == pytest.approx(lengths, rel=1e-9)

@@ -13,7 +13,7 @@ from evolvent import (
     Freedom,
     InitialState,
     Material,
-    Moment,
+    MotionState,
     Problem,
     Rigid,
     Step,
@@ -30,7 +30,7 @@ PASSAGE = 2.0 * LENGTH / WAVE  # s, in which the wave runs to the free end and b
 MASS = 7.85e-9 * LENGTH
 
 
-def thrown_bar(modes: int, steps: int) -> tuple[list[Moment], float]:
+def thrown_bar(modes: int, steps: int) -> tuple[list[MotionState], float]:
     """A bar of 20 × 1 mm with ν = 0 that flies against a rigid wall 0.1 µm away; the moments, and the time step."""
     mesh = rectangle(1.0, LENGTH, 1, 20, origin=(0.0, 1e-4))
     bar = Body(mesh, BAR, supports=(Fixed("left", "x"),), name="bar")
@@ -41,7 +41,7 @@ def thrown_bar(modes: int, steps: int) -> tuple[list[Moment], float]:
     return list(Transient(problem, TransientSettings(h, modes), flying).run(int(1.3 * steps))), h
 
 
-def forces(moments: list[Moment]) -> Floats:
+def forces(moments: list[MotionState]) -> Floats:
     return np.array([-moment.solution.contacts[0].force[1] for moment in moments])
 
 

@@ -17,7 +17,7 @@ from evolvent import (
     InitialState,
     InputError,
     Material,
-    Moment,
+    MotionState,
     Problem,
     Rigid,
     Step,
@@ -40,13 +40,13 @@ def thrown_bar(gap: float = GAP) -> Problem:
     return Problem((bar, wall), (Contact((0, "bottom"), (1, "top"), reach=1.0),))
 
 
-def rebound(modes: int, conserving: bool, gap: float = GAP, damping: float = 0.0) -> list[Moment]:
+def rebound(modes: int, conserving: bool, gap: float = GAP, damping: float = 0.0) -> list[MotionState]:
     """It flies down; ten time steps in 2L/c."""
     settings = TransientSettings(PASSAGE / 10, modes, damping, conserving=conserving)
     return list(Transient(thrown_bar(gap), settings, InitialState(velocities={0: (0.0, -SPEED)})).run(18))
 
 
-def energies(moments: list[Moment]) -> Floats:
+def energies(moments: list[MotionState]) -> Floats:
     """Over ½mv²."""
     return np.array([moment.energy.total for moment in moments]) / (0.5 * BAR.density * LENGTH * SPEED**2)
 
@@ -125,7 +125,7 @@ def shaken(time: float) -> Step:
     return Step(1.0, freedoms=((0, Freedom("y", load=load)), (0, Freedom("x", load=150.0))))
 
 
-def figures(moment: Moment) -> Floats:
+def figures(moment: MotionState) -> Floats:
     """All that a moment says, in one array."""
     contact = moment.solution.contacts[0]
     scalars = [moment.time, moment.error, moment.work, moment.energy.total, moment.systems]

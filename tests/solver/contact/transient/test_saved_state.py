@@ -17,7 +17,7 @@ from evolvent import (
     Freedom,
     InitialState,
     InputError,
-    Moment,
+    MotionState,
     Problem,
     Rigid,
     Step,
@@ -66,7 +66,7 @@ def begun(settings: TransientSettings) -> Transient:
     return Transient(shaken(), settings, InitialState(Step()))
 
 
-def figures(moment: Moment) -> dict[str, Floats]:
+def figures(moment: MotionState) -> dict[str, Floats]:
     """All that a moment says: an array of each unit."""
     contact, solution = moment.solution.contacts[0], moment.solution
     lengths = [contact.slip.ravel(), *solution.motions, *(solution.displacement(i).ravel() for i in range(2))]

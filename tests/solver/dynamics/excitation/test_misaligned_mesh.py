@@ -13,7 +13,7 @@ from evolvent.dynamics.excitation import misaligned_mesh
 from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
 from evolvent.dynamics.excitation.misaligned_mesh import misaligned_figures
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.load_list import LoadList, shared_gears_name
+from evolvent.gears.shared_gears import SharedGears, shared_gears_name
 from evolvent.gears.sweep.misaligned_position import misaligned_on
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
@@ -33,7 +33,7 @@ def models() -> dict[float, GearModel]:
     scenes = [load_scene(PAIR, [*settings, f"pair.misalignment_um={each}"]) for each in MISALIGNMENTS]
     problems = [gear_problem(scene) for scene in scenes]
     assert len({shared_gears_name(problem) for problem in problems}) == 1
-    gears = LoadList(problems)
+    gears = SharedGears(problems)
     return {each: gears.prepare(problem).model for each, problem in zip(MISALIGNMENTS, problems)}
 
 

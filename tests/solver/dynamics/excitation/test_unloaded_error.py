@@ -10,7 +10,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import Flank
@@ -83,7 +83,7 @@ def test_relief_against_profiles_turned_onto_each_other(free: Member, parabolic:
 
 def profile_gap(one: GearPair, angle: float, free: Member) -> float:
     """r_b times the least angle by which the free gear's profile has to turn."""
-    stand, standing = Stand(one, angle), free.mate
+    stand, standing = PairRotation(one, angle), free.mate
     own, other = (Flank(one.gears[gear]) for gear in (standing, free))
     points, mate = (flank.point(np.linspace(*flank.roll_lengths, 20001), 0.0)[:, :2] for flank in (own, other))
     curve = CubicSpline(np.hypot(*mate.T), np.unwrap(np.arctan2(mate[:, 1], mate[:, 0])))
@@ -108,7 +108,7 @@ def test_helical_flanks_just_touch(misalignment: float) -> None:
     found = unloaded_error(RigidFlanks(one), turns, Member.WHEEL)
     assert np.ptp(found) > 1e-4
     for angle, e in zip(turns, found):
-        stand = Stand(one, float(angle), (0.0, float(e) / one.wheel.base_radius))
+        stand = PairRotation(one, float(angle), (0.0, float(e) / one.wheel.base_radius))
         nearest = min(nearest_distance(one, stand, tooth) for tooth in range(-3, 4))
         assert nearest == pytest.approx(0.0, abs=NANOMETRE)
 
@@ -125,7 +125,7 @@ def test_misalignment_of_either_sign_takes_the_same_room() -> None:
         assert (found > -1.35 * half).all()
 
 
-def nearest_distance(one: GearPair, stand: Stand, tooth: int) -> float:
+def nearest_distance(one: GearPair, stand: PairRotation, tooth: int) -> float:
     """Least signed distance of the pinion's flank from the wheel's [mm]."""
     flank, mate = Flank(one.pinion), Flank(one.wheel)
     centre, size = np.array([np.mean(flank.roll_lengths), 0.0]), np.array([np.ptp(flank.roll_lengths), 16.0])

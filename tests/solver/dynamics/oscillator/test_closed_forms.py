@@ -68,7 +68,7 @@ def test_backbone_with_free_flight(amplitude: float, ratio: float) -> None:
         return float(period_map(one, factor * 2.0 * np.pi / (exact * NATURAL), start)[0][1])
 
     assert brentq(velocity, 0.95, 1.05, xtol=1e-13) == pytest.approx(1.0, abs=1e-8)
-    assert history(one, 2.0 * np.pi / (exact * NATURAL), start).apart > 0.0
+    assert history(one, 2.0 * np.pi / (exact * NATURAL), start).separated_share > 0.0
 
 
 MEISSNER = [(0.6, 0.5, 2.6), (0.35, 0.3, 2.0), (0.2, 0.7, 1.5)]
@@ -126,7 +126,7 @@ def test_onset_of_separation(ratio: float) -> None:
         response = factor * exact * (STIFFNESS + 1j * ω * damping) / (STIFFNESS - MASS * ω**2 + 1j * ω * damping)
         start = np.array([STATIC + response.real, -ω * response.imag])
         found = steady_state(one, 2.0 * np.pi / ω, start)
-        assert (history(one, found.period, found.state).apart > 0.0) == parts
+        assert (history(one, found.period, found.state).separated_share > 0.0) == parts
 
 
 @pytest.mark.parametrize("speed", [0.0, 1.2, 3.0])

@@ -21,14 +21,14 @@ def wavy(amplitude: float) -> Floats:
     return amplitude * (np.cos(2.0 * np.pi * PHASES) + 0.4 * np.sin(4.0 * np.pi * PHASES))
 
 
-def surface(damped_apart: bool = False, image: bool = False) -> TorsionalModel:
+def surface(damping_in_separation: bool = False, image: bool = False) -> TorsionalModel:
     """A force that stiffens with its depth and varies over the phase, on flanks with an error and backlash; the hardest
     blows go beyond the last depth. image: on back flanks that are the loaded ones' mirror image."""
     depths = STATIC * np.array([0.0, 0.2, 0.6, 1.2, 2.0, 4.0])
     force = STIFFNESS * np.outer(1.0 + wavy(0.15), depths) * (1.0 + 0.2 * np.tanh(depths / STATIC))
     front = force_side(depths, force, wavy(0.05 * STATIC))
     back = mirrored(front, 0.3, 3.0 * STATIC) if image else behind(front, 3.0 * STATIC)
-    return TorsionalModel(MASS, LOAD, MeshLaw(front, back), 0.06 * MASS * NATURAL, damped_apart, 2e-3)
+    return TorsionalModel(MASS, LOAD, MeshLaw(front, back), 0.06 * MASS * NATURAL, damping_in_separation, 2e-3)
 
 
 def linear() -> TorsionalModel:
@@ -45,7 +45,10 @@ START = {
 
 MODELS = pytest.mark.parametrize(
     "model",
-    [linear(), surface(), surface(damped_apart=True), surface(image=True), surface(damped_apart=True, image=True)],
+    [
+        linear(), surface(), surface(damping_in_separation=True), surface(image=True),
+        surface(damping_in_separation=True, image=True),
+    ],
     ids=["k x", "F(x)", "damped apart", "mirrored", "mirrored, damped apart"],
 )
 
@@ -109,6 +112,6 @@ def test_no_backlash(speed: float) -> None:
     found = y
     for _ in range(3):
         path = history(model, period, found, np.linspace(0.0, 1.0, 200))
-        assert path.behind > 0.1 and path.apart < 1e-12
+        assert path.back_contact_share > 0.1 and path.separated_share < 1e-12
         found, _ = period_map(model, period, found)
     assert found / scale == pytest.approx(integrate(model, period, y, 3) / scale, abs=1e-8)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evolvent.contact.transient.time_schemes.scheme_energy import SchemeEnergy
-from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, LinearSystem, TimeScheme, TimeStep
 from evolvent.dynamics.transient.changed_length import motion_energy, step_error, stretched
 from evolvent_meshes.arrays import Floats
 
@@ -31,12 +31,12 @@ class Step:
     """Under forces at both ends, from a state with the acceleration one step before."""
 
     energy: SchemeEnergy
-    begin: MotionState
+    begin: KinematicState
     before: Floats
-    end: MotionState
+    end: KinematicState
     forces: Floats
 
-    def imbalance(self, begin: MotionState, before: Floats) -> float:
+    def imbalance(self, begin: KinematicState, before: Floats) -> float:
         """Change of E from this begin less work, plus what damping and the method take out, over E."""
         at, end = self.energy, self.end
         kept = at.of(end, self.begin.acceleration), at.of(begin, before)
@@ -52,7 +52,7 @@ def test_energy_balance_is_exact_where_lengths_change(spectral_radius: float) ->
     of its length, each balances to 1e-12. With the accelerations of the old length none does whose length is another
     one, unless ρ_∞ = 1, where nothing lags."""
     random, system, scheme = np.random.default_rng(5), random_system(), TimeScheme(spectral_radius)
-    state, before = MotionState(*random.standard_normal((3, COUNT))), random.standard_normal(COUNT)
+    state, before = KinematicState(*random.standard_normal((3, COUNT))), random.standard_normal(COUNT)
     last = system.mass @ ((1.0 - scheme.alpha) * state.acceleration + scheme.alpha * before)
     last += system.damping * state.velocity + system.stiffness * state.position
     for h_before, h in pairwise(LENGTHS):
@@ -67,7 +67,7 @@ def test_energy_balance_is_exact_where_lengths_change(spectral_radius: float) ->
 
 def test_equation_of_motion_stays() -> None:
     """(1 − α) a'_n + α a'_{n−1} is what it was, position and velocity likewise; the same length changes nothing."""
-    scheme, state = TimeScheme(0.3), MotionState(*np.random.default_rng(1).standard_normal((3, COUNT)))
+    scheme, state = TimeScheme(0.3), KinematicState(*np.random.default_rng(1).standard_normal((3, COUNT)))
     before, α = np.arange(COUNT, dtype=float), scheme.alpha
     found, past = stretched(scheme, state, before, 0.25)
     assert (1.0 - α) * found.acceleration + α * past == pytest.approx((1.0 - α) * state.acceleration + α * before)
@@ -79,7 +79,7 @@ def test_equation_of_motion_stays() -> None:
 
 def swung(divisor: int, is_stretched: bool) -> float:
     """Error at t = 2 of an oscillator from z = 1, v = 0, in steps of 0.1 and 0.05 in turn over the divisor."""
-    scheme, state = TimeScheme(0.3), MotionState(np.ones(1), np.zeros(1), np.array([-(RATE**2)]))
+    scheme, state = TimeScheme(0.3), KinematicState(np.ones(1), np.zeros(1), np.array([-(RATE**2)]))
     before, lengths, time = state.acceleration, [0.1 / divisor, 0.05 / divisor], 0.0
     for n in range(14 * divisor):
         h, h_before = lengths[n % 2], lengths[(n - 1) % 2]
@@ -96,18 +96,18 @@ def test_second_order_in_steps_of_different_lengths() -> None:
     assert swung(32, False) / swung(64, False) == pytest.approx(2.0, rel=0.1)
 
 
-def consistent(scheme: TimeScheme, h: float, time: float) -> MotionState:
+def consistent(scheme: TimeScheme, h: float, time: float) -> KinematicState:
     """The oscillator's exact motion, with the acceleration that the scheme keeps: z̈ at t + αh."""
     position = np.array([np.sin(RATE * time)])
     lagging = np.array([-(RATE**2) * np.sin(RATE * (time + scheme.alpha * h))])
-    return MotionState(position, np.array([RATE * np.cos(RATE * time)]), lagging)
+    return KinematicState(position, np.array([RATE * np.cos(RATE * time)]), lagging)
 
 
 def test_error_of_a_step() -> None:
     """From the exact motion of an oscillator: the distance to it after a step, over the step and over its largest
     speed, is estimated within 5 %, and with four times the energy half as large."""
     scheme, h, time = TimeScheme(0.5), 0.01, 0.3
-    state: MotionState = consistent(scheme, h, time)
+    state: KinematicState = consistent(scheme, h, time)
     step = TimeStep(OSCILLATOR, scheme, state, h)
     end, energy = step.after(step.known / step.matrix[0, 0]), motion_energy(OSCILLATOR, state)
     assert np.sqrt(2.0 * energy) == pytest.approx(RATE)

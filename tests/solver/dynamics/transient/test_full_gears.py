@@ -89,7 +89,7 @@ def transient(per_harmonic: int) -> PairTransient:
     pinion, wheel = (gear_modes(body, ModeChoice(0.0, per_harmonic)) for body in model.bodies)
     torques = model.load.torque, model.load.torque * model.pair.ratio
     drive = Drive.free(model.pair.ratio, (pinion.moment_of_inertia, wheel.moment_of_inertia), torques)
-    pair = MovingPair(model, (pinion, wheel), drive, 0.0, MESH_DAMPING, damped_apart=True)
+    pair = MovingPair(model, (pinion, wheel), drive, 0.0, MESH_DAMPING, damping_in_separation=True)
     return PairTransient(pair, 0.0, 2.0 * np.pi * RPM / 60.0, SCHEME, KeptContacts(pair, POSITIONS, 1))
 
 
@@ -188,7 +188,7 @@ class WholePair:
         return self._bent(before.results[0]), self._bent(now.results[0])
 
     def _bent(self, result: PositionResult) -> Floats:
-        ψ = self.fast.pair.drive.of(result.stand.extra, self.fast.pair.base_radii)
+        ψ = self.fast.pair.drive.of(result.stand.beyond_nominal, self.fast.pair.base_radii)
         return np.append(np.concatenate([gear.bent(result) for gear in self.gears]), ψ)
 
 

@@ -18,7 +18,7 @@ from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransie
 from evolvent.dynamics.transient.start_from_rest import start_from_rest
 from evolvent.dynamics.transient.steady_state import until_steady
 from evolvent.gears.contact.pair_contact import gear_contact
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.arrays import Floats
@@ -58,7 +58,7 @@ def test_flanks_just_touch() -> None:
     grows at the speed of the line of action."""
     case, start = resting()
     pair, ψ = case.pair, float(start.motion.position[-1])
-    stand = Stand(pair.model.pair, 0.0, pair.drive.rotations(ψ))
+    stand = PairRotation(pair.model.pair, 0.0, pair.drive.rotations(ψ))
     gaps = gear_contact(pair.model.bodies, stand, list(pair.model.teeth), np.inf).operator.gap
     assert abs(float(np.min(gaps))) < 1e-4
     rate = float(start.motion.velocity[-1]) * pair.lever
@@ -149,12 +149,12 @@ def test_motion_ends_as_from_statics() -> None:
     assert np.abs(one - other).max() < 0.01 * np.ptp(other)
 
 
-@pytest.mark.parametrize("damped_apart", [False, True])
-def test_free_flight(damped_apart: bool) -> None:
+@pytest.mark.parametrize("damping_in_separation", [False, True])
+def test_free_flight(damping_in_separation: bool) -> None:
     """Problem: the pair after its teeth have parted. Exact: m ẍ = F_0, a parabola, as the damping of the mesh does not
     act, or m ẍ + c ẋ = F_0 where it does. The energy of the motion is in balance where it begins to act or ends."""
     case, start = resting(positions=1500)
-    pair = replace(case.pair, damped_apart=damped_apart, mesh_damping=0.2 * case.pair.mesh_damping)
+    pair = replace(case.pair, damping_in_separation=damping_in_separation, mesh_damping=0.2 * case.pair.mesh_damping)
     case = replace(case, pair=pair, contacts=replace(case.contacts, pair=pair, store=ContactStore()))
     found = first(case, start, 60)
     touching = [bool(moment.mesh_force) for moment in found]
@@ -163,7 +163,7 @@ def test_free_flight(damped_apart: bool) -> None:
     assert len(apart) > 4
     assert found[-1].mesh_force > 0.0
     m, load = pair.drive.inertia / pair.lever**2, pair.drive.torque / pair.lever
-    c = pair.mesh_damping if damped_apart else 0.0
+    c = pair.mesh_damping if damping_in_separation else 0.0
     rates = np.array([moment.rate for moment in apart])
     accelerations = (load - c * rates) / m
     spans = np.diff([moment.time for moment in apart])

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from evolvent.contact.transient.time_schemes.time_scheme import MotionState, TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, TimeScheme
 from evolvent.dynamics.transient import pair_transient
 from evolvent.dynamics.transient.certificates import EXACT, LIMITS, Unbalanced, certify_motion, certify_step
 from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
@@ -177,7 +177,7 @@ def test_a_run_with_a_wrong_step_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     named."""
     right = PairStep.state
 
-    def wrong(step: PairStep, at: SearchedContact, found: object) -> MotionState:
+    def wrong(step: PairStep, at: SearchedContact, found: object) -> KinematicState:
         state = right(step, at, found)  # type: ignore[arg-type]
         return replace(state, position=state.position * (1.0 + 1e-6))
 

@@ -13,7 +13,7 @@ from evolvent.gears.contact import pair_contact, tooth_contact
 from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep import position_search
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from tests.support.gear_cases import helical_scene, model_of
@@ -33,7 +33,7 @@ def solved(model: GearModel) -> SharedPosition:
 
 def approach(shared: SharedPosition) -> float:
     """Extra rotation [rad] of the loaded gear."""
-    return sum(shared.contact.stand.extra) + float(shared.smooth.motion[0])
+    return sum(shared.contact.stand.beyond_nominal) + float(shared.smooth.motion[0])
 
 
 def test_contact_outside_the_window_is_found(deep: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -58,9 +58,11 @@ def test_nominal_contact_is_all_inside_the_window() -> None:
     assert found.contact.geometry.half_width == model.half_width
 
 
-def depth_outside(model: GearModel, extra: tuple[float, float], rotation: tuple[float, float] = (0.0, 0.0)) -> float:
+def depth_outside(
+    model: GearModel, beyond_nominal: tuple[float, float], rotation: tuple[float, float] = (0.0, 0.0)
+) -> float:
     """Overlap [mm] of undeflected flanks outside half the window, searched at these rotations, then turned on [rad]."""
-    stand = Stand(model.pair, 0.0, extra)
+    stand = PairRotation(model.pair, 0.0, beyond_nominal)
     contact = pair_contact.gear_contact(model.bodies, stand, list(model.teeth), 0.5 * model.half_width)
     nothing = np.zeros((len(contact.geometry.node), 1))
     return overlap_outside(contact, unsearched_overlaps(contact.geometry, model.teeth), nothing, rotation)

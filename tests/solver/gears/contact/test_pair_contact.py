@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.pair_contact import GearContact, gear_contact
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand
+from evolvent.gears.kinematics import PairRotation
 from tests.support.gear_cases import model_of, spur_scene
 
 DEPTHS = 0.003, 0.002
@@ -32,7 +32,7 @@ def contact(model: GearModel) -> GearContact:
 
 
 def searched(model: GearModel) -> GearContact:
-    return gear_contact(model.bodies, Stand(model.pair, 0.02), list(model.teeth), model.half_width)
+    return gear_contact(model.bodies, PairRotation(model.pair, 0.02), list(model.teeth), model.half_width)
 
 
 def worn(model: GearModel) -> GearModel:

@@ -41,7 +41,7 @@ def test_tangent_stiffness_is_the_difference_quotient_of_two_torques(share: floa
     torques over base radius by that of rotations times base radius, as long as no quadrature point opens or closes."""
     angle, load = share * 2.0 * np.pi / model.pair.pinion.z, model.load
     here = shared_position(model, angle, (0.0, 0.0), [0.0], None)
-    place = SearchedAt(angle, here.contact.stand.extra, here.contact.geometry.half_width)
+    place = SearchedAt(angle, here.contact.stand.beyond_nominal, here.contact.geometry.half_width)
     radius = model.pair.gears[load.on].base_radius
     low, high = (
         searched_at(with_load(model, factor * load.torque, load.on), place, [0.0]).smooth.motion[0]

@@ -46,7 +46,7 @@ def counted(mesh: MeshData) -> list[int]:
 def test_webs_are_counted(body: tuple[str, ...], long_way: bool, order: int) -> None:
     """Exact: a wheel with a web, with and without a hub, of both orders, also with three times the elements in its
     body."""
-    off = ['skip.off=["coarse-body"]'] if long_way else []
+    off = ['exact.parts=["coarse-body"]'] if long_way else []
     problem = gear_problem(helical_scene(*body, f"mesh.order={order}", *off))
     found = one_mesh_sizes(problem)[Member.WHEEL]
     assert [found.dofs, found.flank, found.cuts] == counted(gear_mesh(problem, Member.WHEEL))

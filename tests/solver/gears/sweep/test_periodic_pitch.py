@@ -221,7 +221,7 @@ def earlier_jumps(model: GearModel) -> tuple[Floats, Floats]:
     angle = history.stand.angle + step
     jumps: list[PreviousJump] = []
     for at, known in ((angle, history), (angle - turn, history.earlier(1))):
-        contact = shared_position(model, at, history.stand.extra, [0.3], None).contact
+        contact = shared_position(model, at, history.stand.beyond_nominal, [0.3], None).contact
         jumps += previous_jumps(contact.geometry, [known])
     return jumps[0].jump, jumps[1].jump
 

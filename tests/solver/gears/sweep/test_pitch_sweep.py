@@ -92,8 +92,8 @@ def test_a_position_that_always_fails_ends_the_sweep(
 def test_guess_of_another_search_is_left_out(spur: GearModel) -> None:
     """A position whose search has not ended where it was made before has other nodes: a known solution of three of them
     changes nothing."""
-    frictions, angle, extra = [0.3], float(np.radians(2.2)), (0.0, 0.0)
-    shared = shared_position(spur, angle, extra, frictions, None)
+    frictions, angle, beyond_nominal = [0.3], float(np.radians(2.2)), (0.0, 0.0)
+    shared = shared_position(spur, angle, beyond_nominal, frictions, None)
     elsewhere = SearchedAt(angle, (1.0, 1.0), 1.0)
     guess = InitialGuess(np.zeros((3, 2)), np.zeros(1))
     known = {0: KnownSolution(elsewhere, guess, {0.3: guess})}

@@ -25,8 +25,8 @@ STARTS = (0.0, 1e-5, -3.3e-4, 1.7e-4)  # rad of the loaded gear
 
 def solved(model: GearModel, start: float) -> PositionResult:
     """Frictionless, the search starting from a rotation of the loaded gear."""
-    extra = (start, 0.0) if model.load.on == Member.PINION else (0.0, start)
-    return solve_position(model, shared_position(model, ANGLE, extra, [0.0], None), 0.0, None, 0.01)[0]
+    beyond_nominal = (start, 0.0) if model.load.on == Member.PINION else (0.0, start)
+    return solve_position(model, shared_position(model, ANGLE, beyond_nominal, [0.0], None), 0.0, None, 0.01)[0]
 
 
 def apart(model: GearModel) -> float:
@@ -73,7 +73,7 @@ def test_contact_patch_that_has_moved_away_gives_the_same_equilibrium(spur: Gear
     nothing = ContactPatch(np.zeros((1, 2)), np.zeros(1, dtype=bool))
     found, wanted = (shared_position(spur, 0.01, (0.0, 0.0), [0.0], before) for before in (nothing, None))
     assert found.smooth.motion == pytest.approx(wanted.smooth.motion, abs=1e-14)
-    assert found.contact.stand.extra == pytest.approx(wanted.contact.stand.extra, rel=1e-10)
+    assert found.contact.stand.beyond_nominal == pytest.approx(wanted.contact.stand.beyond_nominal, rel=1e-10)
 
 
 def test_frictionless_state_is_the_same_from_the_last_position_and_from_none(spur: GearModel) -> None:
@@ -107,9 +107,9 @@ def test_sweep_predicts_where_the_next_equilibrium_is(spur: GearModel) -> None:
     *angles, coming = np.radians([3.0, 3.1, 3.2])
     swept_to = list(sweep_pitch(spur, Pitch(tuple(angles)), [0.0], initial_state([0.0])))[-1].state
     there = shared_position(spur, coming, (0.0, 0.0), [0.0], None)
-    wanted = np.array(course_after(spur, there, None).extra)
+    wanted = np.array(course_after(spur, there, None).beyond_nominal)
     assert swept_to.course is not None
-    moved = np.abs(wanted - swept_to.course.extra).max()
+    moved = np.abs(wanted - swept_to.course.beyond_nominal).max()
     assert 3.0 * np.abs(wanted - swept_to.predicted(coming)).max() < moved
 
 

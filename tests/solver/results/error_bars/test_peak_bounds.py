@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.results.error_bars.peak_bounds import INNER, beside_largest
+from evolvent.results.error_bars.peak_bounds import INNER, peak_bounds
 from evolvent_meshes.arrays import Floats
 
 
@@ -15,8 +15,8 @@ def test_a_kink_between_points_is_found(kink: float) -> None:
     nothing that is higher than the largest point."""
     x = np.arange(8.0)
     y = 10.0 - np.abs(x - kink)
-    first, second = sorted(beside_largest(x, y), key=lambda each: -each.height)
-    assert (first.place, first.height) == pytest.approx((kink, 10.0), rel=1e-12)
+    first, second = sorted(peak_bounds(x, y), key=lambda each: -each.height)
+    assert (first.angle, first.height) == pytest.approx((kink, 10.0), rel=1e-12)
     assert first.width == 1.0
     assert second.height <= y.max() + 1e-12
 
@@ -27,7 +27,7 @@ def test_concave_curves_are_bounded() -> None:
     for vertex in np.linspace(0.42, 0.58, 17):
         x = np.linspace(0.0, 1.0, 11)
         y = 1.0 - (x - vertex) ** 2
-        bound = max(y.max(), *(each.height for each in beside_largest(x, y)))
+        bound = max(y.max(), *(each.height for each in peak_bounds(x, y)))
         assert 1.0 - 1e-12 <= bound <= 1.0 + 2.0 * 0.1**2
 
 
@@ -35,16 +35,16 @@ def test_places_keep_away_from_the_points() -> None:
     """A kink at a hundredth of an interval from a point: the place is `INNER` of the interval from it, the height that
     of the kink."""
     x = np.arange(8.0)
-    best = max(beside_largest(x, 10.0 - np.abs(x - 3.01)), key=lambda each: each.height)
-    assert best.place == pytest.approx(3.0 + INNER, rel=1e-12)
+    best = max(peak_bounds(x, 10.0 - np.abs(x - 3.01)), key=lambda each: each.height)
+    assert best.angle == pytest.approx(3.0 + INNER, rel=1e-12)
     assert best.height == pytest.approx(10.0, rel=1e-12)
 
 
 def test_a_step_before_falling_values() -> None:
     """0, 0, then 10, 9, 8: where in the first interval the step is cannot be said; the line through the falling values
     is 11 at its far end. Behind it nothing is higher."""
-    before, behind = beside_largest(np.arange(6.0), np.array([0.0, 0.0, 0.0, 10.0, 9.0, 8.0]))
-    assert (before.place, before.height) == pytest.approx((2.5, 11.0), rel=1e-12)
+    before, behind = peak_bounds(np.arange(6.0), np.array([0.0, 0.0, 0.0, 10.0, 9.0, 8.0]))
+    assert (before.angle, before.height) == pytest.approx((2.5, 11.0), rel=1e-12)
     assert behind.height <= 10.0
 
 
@@ -71,7 +71,7 @@ def test_bounds_beside_a_jump_hold_and_are_narrow(width: float, mirrored: bool) 
         x = 0.36 * np.arange(-8.0, 9.0)
         y = sheds_load(x, place, width)
         y = y[::-1] if mirrored else y
-        height = max(y.max(), *(each.height for each in beside_largest(x, y)))
+        height = max(y.max(), *(each.height for each in peak_bounds(x, y)))
         assert 1.0 - 1e-3 <= height <= 1.0 + 2.0 * 0.36 * SLOPE
 
 
@@ -80,12 +80,12 @@ def test_a_kink_at_a_point_before_a_jump() -> None:
     kink itself, and the bound above it by what the gentle line rises over the interval of 0.08°, 0.6 %; 9 % before."""
     x = np.array([0.54, 0.72, 0.7608, 0.8016, 0.8832, 1.08, 1.44])
     y = np.array([0.9070, 0.9184, 0.9210, 0.92363, 0.5944, 0.5787, 0.5802])
-    height = max(each.height for each in beside_largest(x, y))
+    height = max(each.height for each in peak_bounds(x, y))
     assert height == pytest.approx(0.92363 + 0.0816 * (0.92363 - 0.9210) / 0.0408, rel=1e-9)
 
 
 def test_ends_have_no_bounds() -> None:
     """Where the largest point is the first or the last, or there are fewer than four, nothing is said."""
     x = np.arange(5.0)
-    assert list(beside_largest(x, x)) == [] == list(beside_largest(x, -x))
-    assert list(beside_largest(x[:3], np.array([0.0, 1.0, 0.0]))) == []
+    assert list(peak_bounds(x, x)) == [] == list(peak_bounds(x, -x))
+    assert list(peak_bounds(x[:3], np.array([0.0, 1.0, 0.0]))) == []

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from evolvent.commands.app import Exit, main
-from evolvent.gears import load_list as gear_loads
+from evolvent.gears import shared_gears as gear_loads
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.tables.load_table import LoadRow
 from evolvent.run.kinds.loads import Loads

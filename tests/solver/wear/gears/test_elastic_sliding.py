@@ -9,7 +9,7 @@ from mpi4py import MPI
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import Stand, line_of_action
+from evolvent.gears.kinematics import PairRotation, line_of_action
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
@@ -44,7 +44,7 @@ def wearing(model: GearModel, positions: int) -> GearWear:
     return GearWear(model, uniform_pitch(model.pair.pinion.z, positions), 0.0, Archard(1e-10, 1e-10), MPI.COMM_SELF)
 
 
-def stand_of(model: GearModel, found: SharedPosition) -> Stand:
+def stand_of(model: GearModel, found: SharedPosition) -> PairRotation:
     """Where the gears stand in the solution."""
     return found.contact.stand.turned(model.load.on, float(found.smooth.motion[0]))
 
@@ -85,7 +85,7 @@ def test_elastic_sliding_of_followed_material_points(kind: str, tolerance: float
     for k in range(0, positions, positions // (3 if kind == "helical" else 6)):
         here, contact = state.shared[k].contact.geometry, state.positions[k].contact
         angles = [gears.pitch.angles[k] + turn for turn in (-TURN, TURN)]
-        sides = [shared_position(model, angle, here.stand.extra, [0.0], None) for angle in angles]
+        sides = [shared_position(model, angle, here.stand.beyond_nominal, [0.0], None) for angle in angles]
         moved = (apart(model, here, sides[1]) - apart(model, here, sides[0])) / (2.0 * TURN)
         pressed = state.shared[k].smooth.traction[:, 0] > 0.0
         nominal = (1.0 + 1.0 / model.pair.ratio) * contact.roll_distance
@@ -140,7 +140,7 @@ def made_up(pair: GearPair, grids: Grids, count: int) -> PitchDeflection:
     stands, known, teeth = [], {}, np.array([-1, 0, 1])
     for k in range(count):
         ε = extra(pair, np.array([k * step]))[0][:, 0]
-        stands.append(Stand(pair, k * step, (float(ε[0]), float(ε[1]))))
+        stands.append(PairRotation(pair, k * step, (float(ε[0]), float(ε[1]))))
         fields, axes, seen = [], [], []
         for gear, grid in zip(Member, grids):
             z, arc = (a.ravel() for a in np.meshgrid(grid.heights, grid.arcs, indexing="ij"))

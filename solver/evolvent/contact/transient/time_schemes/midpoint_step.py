@@ -23,7 +23,7 @@ from functools import cached_property
 
 import numpy as np
 
-from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, LinearSystem
 from evolvent_meshes.arrays import Floats
 
 
@@ -33,7 +33,7 @@ class MidpointStep:
 
     system: LinearSystem
     """Mass, damping and stiffness."""
-    state: MotionState
+    state: KinematicState
     """State at the beginning of the step. The acceleration is not used."""
     length: float
     """Step length h [s]."""
@@ -59,17 +59,17 @@ class MidpointStep:
         """Correction κ of the energy [1/s²]."""
         return 2.0 * (1.0 - 1.0 / self.stretch) / self.length**2
 
-    def after(self, position: Floats) -> MotionState:
+    def after(self, position: Floats) -> KinematicState:
         """State at the end of the step from the position z̄ (m,) at its midpoint."""
         return self.ended(2.0 * position - self.state.position)
 
-    def ended(self, position: Floats) -> MotionState:
+    def ended(self, position: Floats) -> KinematicState:
         """State at the end of the step from the position z_{n+1} (m,); the acceleration is the mean one."""
         n = self.state
         velocity = self._rate * (position - n.position) - n.velocity
-        return MotionState(position, velocity, (velocity - n.velocity) / self.length)
+        return KinematicState(position, velocity, (velocity - n.velocity) / self.length)
 
-    def damped(self, after: MotionState) -> float:
+    def damped(self, after: KinematicState) -> float:
         """Energy h v̄ᵀD v̄ that damping dissipates in the step."""
         mean = 0.5 * (self.state.velocity + after.velocity)
         return self.length * float(mean @ (self.system.damping * mean))

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, LinearSystem, TimeScheme
 from evolvent_meshes.arrays import Floats
 
 
@@ -34,7 +34,7 @@ class SchemeEnergy:
     length: float
     """Step length h [s]."""
 
-    def of(self, state: MotionState, before: Floats) -> float:
+    def of(self, state: KinematicState, before: Floats) -> float:
         """Energy E of a state. before: acceleration a_ (m,) one step before."""
         h, α, a = self.length, self.scheme.alpha, state.acceleration
         d = a - before
@@ -43,7 +43,7 @@ class SchemeEnergy:
         elastic = 0.5 * float(state.position @ (self.system.stiffness * state.position))
         return kinetic + h**2 / 8.0 * spread + h**2 / 16.0 * α * (1.0 - α**2) * self._square(d) + elastic
 
-    def taken(self, before: Floats, after: MotionState) -> float:
+    def taken(self, before: Floats, after: KinematicState) -> float:
         """Energy L that a step dissipates, never negative. before: a_{n−1} (m,); after: the state at its end."""
         α = self.scheme.alpha
         return -α * (1.0 - α) ** 2 / 16.0 * self.length**2 * self._square(after.acceleration - before)

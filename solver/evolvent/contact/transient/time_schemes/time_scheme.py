@@ -66,7 +66,7 @@ class LinearSystem:
 
 
 @dataclass(frozen=True)
-class MotionState:
+class KinematicState:
     """Position, velocity and acceleration at one time."""
 
     position: Floats
@@ -86,7 +86,7 @@ class StepEquations(Protocol):
         ...
 
     @property
-    def state(self) -> MotionState:
+    def state(self) -> KinematicState:
         """State at the beginning of the step."""
         ...
 
@@ -105,7 +105,7 @@ class StepEquations(Protocol):
         """Known forces b (m,) of the step."""
         ...
 
-    def after(self, position: Floats) -> MotionState:
+    def after(self, position: Floats) -> KinematicState:
         """State at the end of the step, from z (m,)."""
         ...
 
@@ -118,7 +118,7 @@ class TimeStep:
     """Mass, damping and stiffness."""
     scheme: TimeScheme
     """Weights of the method."""
-    state: MotionState
+    state: KinematicState
     """State at the beginning of the step."""
     length: float
     """Step length h [s]."""
@@ -127,7 +127,7 @@ class TimeStep:
     def unused(system: LinearSystem, scheme: TimeScheme) -> TimeStep:
         """Step without motion, as the initial state needs one."""
         nothing = np.zeros(len(system.stiffness))
-        return TimeStep(system, scheme, MotionState(nothing, nothing, nothing), 1.0)
+        return TimeStep(system, scheme, KinematicState(nothing, nothing, nothing), 1.0)
 
     @cached_property
     def matrix(self) -> Floats:
@@ -141,10 +141,10 @@ class TimeStep:
         inertia = self._inertia * self._drifted - self.scheme.alpha * self.state.acceleration
         return self.system.mass @ inertia + self.system.damping * (self._rate * self._drifted - self._coasted)
 
-    def after(self, position: Floats) -> MotionState:
+    def after(self, position: Floats) -> KinematicState:
         """State at the end of the step, from z_{n+1} (m,)."""
         acceleration = (position - self._drifted) / (self.scheme.beta * self.length**2)
-        return MotionState(position, self._coasted + self.scheme.gamma * self.length * acceleration, acceleration)
+        return KinematicState(position, self._coasted + self.scheme.gamma * self.length * acceleration, acceleration)
 
     @property
     def _inertia(self) -> float:

@@ -32,7 +32,7 @@ from evolvent.results.archive.store import Arrays, Store
 from evolvent.results.tables.table import SCENE_TITLE
 from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.scene.differences import differences
-from evolvent.scene.scene import Scene, SceneError, load_scene
+from evolvent.scene.scene import Scene, SceneError, kept_scene
 from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.gears.pair import GearPair
 
@@ -103,7 +103,7 @@ def another(scene: Scene, path: Path) -> str:
     """Message on an archived case of another scene than this one, with the keys that differ from the scene of the
     folder."""
     try:
-        differing = differences(load_scene(path.parent.parent / SCENE_TITLE.name), scene)
+        differing = differences(kept_scene(path.parent.parent / SCENE_TITLE.name), scene)
     except SceneError:
         differing = ""
     difference = f": this one has {differing}" if differing else ""

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from evolvent.gears.gear_model import Mesher
-from evolvent.gears.load_list import shared_gears_name
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.shared_gears import shared_gears_name
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
 from evolvent.run.strength.pitch_roots import root_meshes, root_refinement
 from evolvent.scene.gear_problem import gear_problem, shares_gears

@@ -12,9 +12,10 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
 
 from evolvent.run.kinds.all import KINDS
-from evolvent.scene.scene import Scene, SceneError
+from evolvent.scene.scene import Scene, SceneError, future_warning
 from evolvent.scene.scene_text import STUDY_FILE, require_kind, require_shallow, scene_text, toml_values
 from evolvent.scene.schema.errors import InputProblem, key_problem, problems_of, shown, validation_error
+from evolvent.scene.schema.old_names import Warn, new_names
 from evolvent.scene.schema.section import SceneSection, key
 
 COMPUTATIONS = ("check", *(kind.name for kind in KINDS if kind.in_studies))
@@ -213,14 +214,28 @@ class StudyFile(SceneSection):
         return count * (self.latin_hypercube.samples if self.latin_hypercube is not None else 1)
 
 
-def load_study(path: Path) -> StudyFile:
-    """Reads and validates a study file. Raises SceneError."""
+def load_study(path: Path, warn: Warn = future_warning) -> StudyFile:
+    """Reads and validates a study file. warn: is given a sentence on each old name of a scene's key. Raises SceneError.
+    """
     try:
         values = toml_values(scene_text(path, STUDY_FILE), STUDY_FILE)
         require_shallow(values)
         require_kind(values, STUDY_FILE)
+        _rename(values, warn)
         return StudyFile.model_validate(values)
     except ValidationError as error:
         raise SceneError(problems_of(error, StudyFile), str(path)) from error
     except SceneError as error:
         raise SceneError(error.problems, str(path)) from error.__cause__
+
+
+def _rename(values: dict[str, Any], warn: Warn) -> None:
+    """Gives the scene's keys in a study file, not yet validated, their present names. Raises SceneError."""
+    for part in ("leave_out", "set", *PARTS):
+        *sections, name = part.split(".")
+        holder = values.get(sections[0]) if sections else values
+        given = holder.get(name) if isinstance(holder, dict) else None
+        if isinstance(holder, dict) and isinstance(given, dict):
+            holder[name] = new_names(flat(given), warn)
+        elif isinstance(holder, dict) and isinstance(given, list) and all(isinstance(each, str) for each in given):
+            holder[name] = list(new_names(dict.fromkeys(given), warn))

@@ -14,9 +14,10 @@ from evolvent.results.archive.archive import fingerprint
 from evolvent.run.study.plan.parameters import axes, combinations
 from evolvent.run.study.plan.shared_gears import gears_names, on_shared_meshes
 from evolvent.run.study.plan.study_file import StudyFile
-from evolvent.scene.scene import Scene, SceneError, scene_from_values
-from evolvent.scene.scene_text import apply_override, nested_values, scene_text
+from evolvent.scene.scene import Scene, SceneError, future_warning, scene_from_values
+from evolvent.scene.scene_text import apply_overrides, nested_values, scene_text
 from evolvent.scene.schema.errors import InputProblem, shown
+from evolvent.scene.schema.old_names import Warn
 
 NAME = 16
 """Number of digits of a scene's name."""
@@ -41,13 +42,16 @@ class StudyScene:
     """Name of the condensed gears that the scene can share; empty where it has its own."""
 
 
-def study_scenes(study: StudyFile, path: Path, overrides: Sequence[str], version: str) -> list[StudyScene]:
+def study_scenes(
+    study: StudyFile, path: Path, overrides: Sequence[str], version: str, warn: Warn = future_warning
+) -> list[StudyScene]:
     """All scenes of a study, in the order of its parameters.
 
     path: of the study file. overrides: "section.key=value" for all scenes, as `--set` takes them. version: of the
-    program. Raises SceneError where the base scene cannot be read, or the values of all scenes are refused.
+    program. warn: is given a sentence on each old name of a key. Raises SceneError where the base scene cannot be read,
+    or the values of all scenes are refused.
     """
-    base, found, first = base_values(study, path, overrides), [], None
+    base, found, first = base_values(study, path, overrides, warn), [], None
     for parameters in combinations(axes(study)):
         try:
             scene = scene_from_values(_with(base, parameters, path.parent))
@@ -76,19 +80,18 @@ def _with(base: Values, parameters: Mapping[str, Any], folder: Path) -> Values:
     return values
 
 
-def base_values(study: StudyFile, path: Path, overrides: Sequence[str]) -> Values:
+def base_values(study: StudyFile, path: Path, overrides: Sequence[str], warn: Warn) -> Values:
     """Nested values of the base scene with those that all scenes share. Raises SceneError."""
     base = path.parent / study.scene
     try:
-        values = nested_values(scene_text(base), (), base.parent)
+        values = nested_values(scene_text(base), (), base.parent, warn)
     except SceneError as error:
         raise SceneError(error.problems, f"{path}: scene {base}") from error
     for name in study.leave_out:
         _take_out(values, name)
     for name, value in {**{f"output.{name}": drawn for name, drawn in NOT_DRAWN.items()}, **study.set}.items():
         _put(values, name, value, path.parent)
-    for override in overrides:
-        apply_override(values, override)
+    apply_overrides(values, overrides, warn)
     return values
 
 
@@ -130,5 +133,5 @@ def _name(each: StudyScene, study: StudyFile, version: str) -> str:
     if each.scene is None:
         content = [sorted((name, repr(value)) for name, value in each.parameters.items())]
     else:
-        content = [fingerprint(each.scene), each.scene.output.model_dump(mode="json"), each.scene.skip.off]
+        content = [fingerprint(each.scene), each.scene.output.model_dump(mode="json"), each.scene.exact.parts]
     return hashlib.sha256(json.dumps([version, study.compute, shared, *content]).encode()).hexdigest()[:NAME]

@@ -17,7 +17,7 @@ VALUE_WORDS: tuple[tuple[str, Any], ...] = (
     ("case_hardened carburised carburized nitrided surface_hardened induction_hardened", "hardened"),
     ("soft normalised normalized quenched tempered quenched_and_tempered", "through_hardened"),
     ("iron grey_iron gray_iron grey_cast_iron", "cast_iron"),
-    ("increasing rising run_up runup accelerating", "up"), ("decreasing falling run_down coast_down", "down"),
+    ("up increasing rising runup accelerating", "run_up"), ("down decreasing falling coast_down", "run_down"),
     ("static quasi_static quasistatic", "statics"), ("impact blow standstill", "rest"),
     ("flywheel prescribed constant", "constant_speed"), ("front drive_side", "loaded"), ("coast_side rear", "back"),
     ("yes on", True), ("no off", False),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evolvent.contact.transient.time_schemes.midpoint_step import MidpointStep
-from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, LinearSystem
 from evolvent_meshes.arrays import Floats
 
 H, SIZE = 0.3, 4
@@ -21,15 +21,15 @@ def step(stretch: float) -> MidpointStep:
     mass = root @ root.T + np.eye(SIZE)
     stiffness, damping = rng.uniform(1.0, 9.0, SIZE), rng.uniform(0.0, 0.5, SIZE)
     stiffness[-1] = damping[-1] = 0.0
-    state = MotionState(rng.normal(size=SIZE), rng.normal(size=SIZE), np.zeros(SIZE))
+    state = KinematicState(rng.normal(size=SIZE), rng.normal(size=SIZE), np.zeros(SIZE))
     return MidpointStep(LinearSystem(mass, damping, stiffness), state, H, stretch, np.zeros(SIZE))
 
 
-def ended(step: MidpointStep, force: Floats) -> MotionState:
+def ended(step: MidpointStep, force: Floats) -> KinematicState:
     return step.after(np.linalg.solve(step.matrix, force + step.known))
 
 
-def energy(system: LinearSystem, state: MotionState) -> float:
+def energy(system: LinearSystem, state: KinematicState) -> float:
     v, z = state.velocity, state.position
     return 0.5 * float(v @ system.mass @ v + z @ (system.stiffness * z))
 
@@ -75,7 +75,7 @@ def test_second_order_on_an_oscillator() -> None:
     exact = np.exp(-δ * time) * (np.cos(ω * time) + δ / ω * np.sin(ω * time))
 
     def error(count: int) -> float:
-        state = MotionState(np.array([1.0]), np.zeros(1), np.zeros(1))
+        state = KinematicState(np.array([1.0]), np.zeros(1), np.zeros(1))
         for _ in range(count):
             state = ended(MidpointStep(system, state, time / count, 1.0, np.zeros(1)), np.zeros(1))
         return abs(float(state.position[0]) - exact)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evolvent.contact.transient.time_schemes.scheme_energy import SchemeEnergy
-from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, LinearSystem, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 
 STEP, COUNT = 0.37, 4
@@ -20,8 +20,8 @@ class Step:
     """From a state to the next one, with the forces at both ends and the acceleration one step before."""
 
     before: Floats
-    begin: MotionState
-    end: MotionState
+    begin: KinematicState
+    end: KinematicState
     forces: tuple[Floats, Floats]
 
 
@@ -37,7 +37,7 @@ def steps(at: SchemeEnergy, count: int = 40) -> Iterator[Step]:
     """Under random forces from a random state, from the second step on."""
     random = np.random.default_rng(5)
     position, velocity, acceleration = random.standard_normal((3, COUNT))
-    state, last = MotionState(position, velocity, acceleration), None
+    state, last = KinematicState(position, velocity, acceleration), None
     for _ in range(count):
         force, step = 5.0 * random.standard_normal(COUNT), TimeStep(at.system, at.scheme, state, at.length)
         reached = step.after(np.linalg.solve(step.matrix, force + step.known))
@@ -80,7 +80,7 @@ def test_a_wrong_state_is_out_of_balance(part: str) -> None:
 def test_energy_is_kinetic_plus_elastic_for_short_steps() -> None:
     """Of the same state, with accelerations before and after that differ as those of a smooth motion do: the difference
     falls as h²."""
-    state, jerk = MotionState(*np.random.default_rng(7).standard_normal((3, COUNT))), np.ones(COUNT)
+    state, jerk = KinematicState(*np.random.default_rng(7).standard_normal((3, COUNT))), np.ones(COUNT)
     found = []
     for h in (1e-2, 5e-3):
         at = energy(0.5, h)

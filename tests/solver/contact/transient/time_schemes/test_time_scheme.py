@@ -17,17 +17,17 @@ from evolvent import (
     Transient,
     TransientSettings,
 )
-from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
+from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, LinearSystem, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import rectangle
 
 MASS, DAMPING, STIFFNESS = 2.0, 0.3, 50.0
 
 
-def steps(spectral_radius: float, count: int, time: float) -> MotionState:
+def steps(spectral_radius: float, count: int, time: float) -> KinematicState:
     """The forced oscillator m z̈ + d ż + k z = sin 3t from z = 1, ż = 0 after equal steps."""
     system = LinearSystem(np.array([[MASS]]), np.array([DAMPING]), np.array([STIFFNESS]))
-    state = MotionState(np.array([1.0]), np.array([0.0]), np.array([-STIFFNESS / MASS]))
+    state = KinematicState(np.array([1.0]), np.array([0.0]), np.array([-STIFFNESS / MASS]))
     h = time / count
     for n in range(1, count + 1):
         step = TimeStep(system, TimeScheme(spectral_radius), state, h)
@@ -61,7 +61,7 @@ def test_motions_too_fast_for_the_step_fall_by_the_spectral_radius(spectral_radi
     system = LinearSystem(np.eye(1), np.zeros(1), np.array([1e10]))
     columns = []
     for start in np.eye(3):
-        state = MotionState(start[:1], start[1:2] / h, start[2:] / h**2)
+        state = KinematicState(start[:1], start[1:2] / h, start[2:] / h**2)
         step = TimeStep(system, TimeScheme(spectral_radius), state, h)
         after = step.after(np.linalg.solve(step.matrix, step.known))
         columns.append([after.position[0], h * after.velocity[0], h**2 * after.acceleration[0]])

@@ -27,7 +27,7 @@ def remedy(setting: str) -> str:
         ("dynamics.flank_surface=soft", '"through_hardened"'), ("dynamics.flank_surface='case hardened'", '"hardened"'),
         ("transient.start=impact", '"rest"'), ("output.fields=yes", "true"), ("output.fields=Off", "false"),
         ("mesh.level=standart", '"standard"'), ("mesh.shape=hexaedron", '"hexahedron"'),
-        ("skip.off=pictres", '"pictures"'),
+        ("exact.parts=pictres", '"pictures"'),
     ],
 )
 def test_the_value_that_was_meant_is_written(setting: str, written: str) -> None:

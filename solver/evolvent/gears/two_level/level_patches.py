@@ -121,8 +121,8 @@ class LoadedPatch:
     cost: float
 
 
-class Towers:
-    """The patches of a swept flank.
+class LevelPatches:
+    """Patches of one level of a swept flank.
 
     body: the flank's coarse cells, all layers of one height, and how they are split, all alike along profile and face.
     base_radius: of the gear [mm].

@@ -10,10 +10,10 @@ from mpi4py import MPI
 
 from evolvent.gears import gear_model
 from evolvent.gears.gear_model import prepare_model
-from evolvent.gears.load_list import LoadList, under_torques
 from evolvent.gears.meshing.flank_levels import FlankLevel, LevelledSector, levelled_sector
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, levelled_mesh
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
+from evolvent.gears.shared_gears import SharedGears, under_torques
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
@@ -51,7 +51,7 @@ def test_each_torque_has_the_gears_that_it_would_have_alone() -> None:
     with Debian 13's. Time counts once."""
     light, heavy = problems()
     assert [len(levelled_sector(each, Member.PINION).levels) for each in (light, heavy)] == [2, 1]
-    gears = LoadList([light, heavy])
+    gears = SharedGears([light, heavy])
     first, second = (gears.prepare(each, MPI.COMM_SELF, few_cells) for each in (heavy, light))
     assert first.seconds > 0.0 and first.condense_seconds > 0.0
     assert second.seconds == second.condense_seconds == 0.0
@@ -76,7 +76,7 @@ def test_gears_of_one_mesh_are_condensed_once(monkeypatch: pytest.MonkeyPatch) -
 
     monkeypatch.setattr(gear_model, "condensed_gear", counted)
     three = under_torques(gear_problem(spur_scene("mesh.level=quick")), [5e3, 10e3, 20e3])
-    gears = LoadList(three)
+    gears = SharedGears(three)
     models = [gears.prepare(each, MPI.COMM_SELF).model for each in three]
     assert len(calls) == 2
     assert len({id(model.bodies[0].flank) for model in models}) == 1

@@ -13,11 +13,11 @@ import pytest
 
 from evolvent.fem.material import STEEL
 from evolvent.gears.meshing.flank_levels import FlankLevel
-from evolvent.gears.two_level import towers
+from evolvent.gears.two_level import level_patches
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.flank_refinement import HELD, coarse_body
+from evolvent.gears.two_level.level_patches import REACH, STEEP_REACH, LevelPatches, reach_of
 from evolvent.gears.two_level.strips import StripCorrection
-from evolvent.gears.two_level.towers import REACH, STEEP_REACH, Towers, reach_of
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.sector.section import SectorResolution
 from evolvent_meshes.sector.sector import sector_mesh
@@ -33,7 +33,7 @@ def correction() -> StripCorrection:
         layer_depths=(0.2, 0.25, 0.285),
     )
     body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (2, 1, 1)))
-    flank = Towers(body, gear.base_radius, gear.twist, HELD, 2.0)
+    flank = LevelPatches(body, gear.base_radius, gear.twist, HELD, 2.0)
     return flank.correction({patch.block: flank.response(patch).contact for patch in flank.patches()})
 
 
@@ -42,7 +42,7 @@ def test_shared_and_interpolated_responses_are_those_of_one_large_patch(monkeypa
     """Against one patch that is all of the tooth: the largest difference is below 1.5 % of the largest correction.
     Patches near the edges, shared along the face and interpolated along the profile all take part."""
     found = correction()
-    monkeypatch.setattr(towers, "REACH", 50.0)
+    monkeypatch.setattr(level_patches, "REACH", 50.0)
     exact = correction()
     D, C = matrix(found), matrix(exact)
     assert len({strip.moved for strip in found.strips}) > 5

@@ -19,7 +19,7 @@ def under_torques(problem: GearProblem, torques: Sequence[float]) -> list[GearPr
     return [replace(problem, torque=torque, mesh_torques=served) for torque in torques]
 
 
-class LoadList:
+class SharedGears:
     """Prepares each of some problems, condensing their gears when the first one is asked for.
 
     problems: alike but for their torques, see `under_torques`, and misalignments, see `shared_gears_name`.
@@ -46,8 +46,8 @@ class LoadList:
 
 
 def shared_gears_name(problem: GearProblem) -> str:
-    """Name of the condensed gears of a problem: problems of one name can have them from one `LoadList`. They differ in
-    torque and misalignment at most, and have the same `mesh_torques`."""
+    """Name of the condensed gears of a problem: problems of one name can have them from one `SharedGears`.
+    They differ in torque and misalignment at most, and have the same `mesh_torques`."""
     served = (problem.torque, problem.torque) if problem.mesh_torques is None else problem.mesh_torques
     bodies = replace(problem.pair, misalignment_um=0.0), problem.materials, problem.mesh, problem.options
     charts = [None if chart is None else chart.text() for chart in problem.flanks]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,9 +10,6 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Mesher, Preparer, prepare_model
 from evolvent.gears.meshing.root_meshes import RootMesh
-from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.solution.certificates import certify
-from evolvent.gears.solution.certified_pitch import certified_pitch
 from evolvent.results.tables.run_warnings import tip_edge_contact
 from evolvent.run.coarse_run import as_run
 from evolvent.run.pitch_run import pitch_of
@@ -21,9 +17,8 @@ from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
-from evolvent.strength.peak_positions import Roots, SweptRoots, roots_of, with_angles, with_peaks
-from evolvent.strength.standard.root_stress import RootLoad
-from evolvent_meshes.gears.member import Member
+from evolvent.strength.certified_roots import certified_roots
+from evolvent.strength.peak_positions import Roots
 
 
 @dataclass(frozen=True)
@@ -64,25 +59,7 @@ def pitch_roots(
     gears = prepare(one_sector, comm, mesh, lambda: progress.stage(CONDENSING)).model
     pitch, frictions = pitch_of(scene), scene.contact.friction
     progress.stage(stage, len(pitch.angles))
-    solved = certified_pitch(gears, pitch, frictions, comm, progress.position)
-    uniform, model = solved.positions, replace(gears, deflected=solved.deflected)
-    every = SweptRoots(uniform, on_first(comm, lambda: roots_of(model, uniform)))
-    every = with_angles(model, every, _outer_points(problem) if angles is None else angles, frictions, comm)
-    if angles is None:  # after the outer points, which narrow the intervals, too
-        every = with_peaks(model, every, frictions, comm)
-    known = {each.angle for each in uniform}
-    further = sorted((each for each in every.positions if each.angle not in known), key=lambda each: each.angle)
-    for position in further:
-        certify(position.results)
-    run = as_run(scene, gears, solved, comm)
+    found = certified_roots(gears, problem, pitch, frictions, comm, progress.position, angles)
+    run = as_run(scene, gears, found.solved, comm)
     edges = on_first(comm, lambda: "" if run is None else tip_edge_contact(run))
-    return PitchRoots(tuple(each.angle for each in further), every.roots, solved.deflected, edges)
-
-
-def _outer_points(problem: GearProblem) -> list[float]:
-    """Pinion rotations in [0, pitch) at which teeth of spur gears are loaded at `RootLoad.outer_point` [rad]."""
-    if problem.pair.pinion.helix_angle_deg > 0.0:
-        return []
-    loads = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)
-    pitch = 2.0 * math.pi / problem.pair.pinion.z
-    return [load.tooth_rotation(load.outer_point.below_tip) % pitch for load in loads]
+    return PitchRoots(found.further, found.roots, found.solved.deflected, edges)

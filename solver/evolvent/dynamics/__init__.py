@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from evolvent.dynamics.solution.mesh_excitation import GearExcitation as GearExcitation
     from evolvent.dynamics.solution.mesh_excitation import mesh_excitation as mesh_excitation
     from evolvent.dynamics.solution.vibration import PairVibration as PairVibration
+    from evolvent.dynamics.solution.vibration import natural_speed as natural_speed
     from evolvent.dynamics.solution.vibration import vibration as vibration
     from evolvent.gears.problem.gear_inertia import polar_moment as polar_moment
     from evolvent.gears.problem.iso_dynamic_factor import Accuracy as Accuracy

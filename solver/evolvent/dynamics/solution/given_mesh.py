@@ -50,8 +50,9 @@ class GivenMeshVibration(SweptVibration):
 
 
 def given_mesh_vibration(
-    stiffness: Sequence[float] | Floats, error: Sequence[float] | Floats, speeds: Sequence[float], *, mass: float,
-    load: float, teeth: int, damping_ratio: float, backlash: float | None = None, damped_apart: bool = False,
+    stiffness: Sequence[float] | Floats, error: Sequence[float] | Floats, speeds: Sequence[float] | Floats, *,
+    mass: float, load: float, teeth: int, damping_ratio: float, backlash: float | None = None,
+    damped_apart: bool = False,
 ) -> GivenMeshVibration:
     """Vibration of an oscillator that runs up and down through some speeds on a mesh of your own.
 
@@ -66,7 +67,7 @@ def given_mesh_vibration(
         at the same phase. None: there are none.
     damped_apart: whether the damping acts on separated flanks, too.
 
-    Raises InputError, Jammed where the backlash has no room for the error, NoSteadyState.
+    Raises InputError, NoSteadyState.
     """
     k, e = _over_a_mesh(stiffness, error)
     for name, value, unit in (("mass", mass, "t"), ("load", load, "N")):

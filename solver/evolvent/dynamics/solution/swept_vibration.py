@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
 from evolvent.dynamics.mesh_oscillator import MeshOscillator
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.results.response import BranchRow, ResponseRow, branch_rows, jumps, response_rows, responses
-from evolvent.dynamics.results.response_errors import unknown_errors
+from evolvent.dynamics.results.response_errors import WAYS, unknown_errors
 from evolvent.gears.problem.iso_dynamic_factor import MethodB
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.input_checks import number, numbers, refuse
 
-Way = Literal["up", "down"]
 SLOWEST = 1e-3
 """Least speed [r/min]."""
 
@@ -42,12 +40,14 @@ class SweptVibration:
         """Speeds (n,) of the pinion [r/min]."""
         return self.curve("speed_rpm")
 
-    def curve(self, column: str, way: Way = "up") -> Floats:
-        """A column of `rows` over the speeds (n,), such as "equivalent_amplitude_um" or "dynamic_factor". Raises
-        InputError for one that there is not."""
+    def curve(self, column: str, way: str = "up") -> Floats:
+        """A column of `rows` over the speeds (n,), such as "equivalent_amplitude_um" or "dynamic_factor". way: "up" or
+        "down". Raises InputError for one that there is not."""
         known = list(ResponseRow.__dataclass_fields__)
         if column not in known:
             refuse("column", f"one of {', '.join(known)}", column, "take one of these")
+        if way not in WAYS:
+            refuse("way", 'running "up" or "down"', way, "take one of these")
         return np.array([getattr(row, column) for row in self.rows if row.way == way])
 
     def save(self, path: Path | str) -> Path:
@@ -65,7 +65,7 @@ def swept_tables(pair: MeshOscillator, swept: SpeedSweep, iso: MethodB | None) -
     return SweptVibration(rows, tuple(branch_rows(pair, swept)), pair.natural_speed, up, down)
 
 
-def checked_speeds(speeds: Sequence[float]) -> Floats:
+def checked_speeds(speeds: Sequence[float] | Floats) -> Floats:
     """Speeds as an array. Raises InputError unless there are two at least, ascending from above 0."""
     numbers("speeds", speeds)
     for speed in speeds:

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from evolvent.dynamics.mesh_oscillator import sweep_at
-from evolvent.dynamics.pair_model import DriveSettings, drive
+from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.dynamics.results.response import DriveSummary, summary
 from evolvent.dynamics.results.response_errors import unknown_errors
 from evolvent.dynamics.solution.mesh_excitation import GearExcitation
 from evolvent.dynamics.solution.swept_vibration import SweptVibration, checked_speeds, swept_tables
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.input_checks import instance, number, refuse
 
 ROUNDING = 1.0 + 1e-9
@@ -39,7 +40,7 @@ class PairVibration(SweptVibration):
 
 
 def vibration(
-    excitation: GearExcitation, torque: float, speeds: Sequence[float], settings: DriveSettings,
+    excitation: GearExcitation, torque: float, speeds: Sequence[float] | Floats, settings: DriveSettings,
     accuracy: Accuracy = PERFECT,
 ) -> PairVibration:
     """Vibration of a pair that runs up and down through some speeds under a torque, as of `evolvent dynamics`.
@@ -53,15 +54,8 @@ def vibration(
 
     Raises InputError, Jammed where the backlash has no room for unloaded errors, TooSoftBodies, NoSteadyState.
     """
-    instance("excitation", excitation, GearExcitation, "give what mesh_excitation(gears, torques) returns")
-    instance("settings", settings, DriveSettings, "write DriveSettings(inertias, damping_ratio, backlash)")
-    _check(settings)
-    heaviest = float(excitation.torques[-1])
-    wanted = f"a number above 0 up to the heaviest of the excitation, {heaviest:.6g} N·mm"
-    remedy = "give mesh_excitation a heavier torque, too"
-    number("torque", torque, wanted, remedy, lambda T: 0.0 < T <= heaviest * ROUNDING)
     values = checked_speeds(speeds)
-    pair = drive(excitation.pair, excitation.mesh, torque / excitation.base_radius, settings)
+    pair = _drive(excitation, torque, settings)
     swept = sweep_at(pair, values)
     iso = method_b(excitation.pair, pair.equivalent_mass, pair.model.load, accuracy, excitation.moduli)
     own = swept_tables(pair, swept, iso)
@@ -69,6 +63,24 @@ def vibration(
     share = max(row.largest_force_N for row in own.rows), float(excitation.mesh.loaded.forces[-1])
     facts = summary(pair, settings, swept, *share, iso, errors)
     return PairVibration(own.rows, own.branch, own.natural_speed, own.jumps_up, own.jumps_down, facts)
+
+
+def natural_speed(excitation: GearExcitation, torque: float, settings: DriveSettings) -> float:
+    """Speed of the pinion at which the mesh frequency is the natural frequency of the pair [r/min]. Arguments and
+    errors are those of `vibration`."""
+    return _drive(excitation, torque, settings).natural_speed
+
+
+def _drive(excitation: GearExcitation, torque: float, settings: DriveSettings) -> Drive:
+    """Oscillator of the pair under a torque. Raises InputError, Jammed, TooSoftBodies."""
+    instance("excitation", excitation, GearExcitation, "give what mesh_excitation(gears, torques) returns")
+    instance("settings", settings, DriveSettings, "write DriveSettings(inertias, damping_ratio, backlash)")
+    _check(settings)
+    heaviest = float(excitation.torques[-1])
+    wanted = f"a number above 0 up to the heaviest of the excitation, {heaviest:.6g} N·mm"
+    remedy = "give mesh_excitation a heavier torque, too"
+    number("torque", torque, wanted, remedy, lambda T: 0.0 < T <= heaviest * ROUNDING)
+    return drive(excitation.pair, excitation.mesh, torque / excitation.base_radius, settings)
 
 
 def _check(settings: DriveSettings) -> None:

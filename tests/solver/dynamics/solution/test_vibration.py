@@ -34,12 +34,12 @@ SCENE = ROOT / "demos/he2022_dynamics.toml"
 SETTINGS = (
     *QUIET, "mesh.level=quick", "mesh.order=1", "sweep.positions=6", "dynamics.torque_percents=[40,100]",
     "dynamics.speed_rpm=[1500,6500]", "dynamics.speeds=8", "dynamics.base_pitch_deviation_um=5",
-    "dynamics.profile_deviation_um=4",
+    "dynamics.profile_deviation_um=4", "dynamics.damping_ratio=0.15",
 )
 TORQUE, SPEEDS = 170e3, np.linspace(1500.0, 6500.0, 8)
 ONE = load_scene(SCENE, SETTINGS)
 PROBLEM = gear_problem(ONE)
-RIGID = DriveSettings((7.65, 7.65), 0.05, 0.05)
+RIGID = DriveSettings((7.65, 7.65), 0.15, 0.05)
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,8 @@ def excitation(gears: GearModel) -> GearExcitation:
 
 def test_figures_are_those_of_the_command(excitation: GearExcitation, tmp_path: Path) -> None:
     """Problem: He's pair on elastic bodies, six positions, two torques, eight speeds, once by `evolvent dynamics` and
-    once by functions. Exact: all rows of excitation.csv, response.csv and branch.csv, to 1e-9."""
+    once by functions; damped so that no branch folds, where rounding says whether a point is stable. Exact: all rows of
+    excitation.csv, response.csv and branch.csv, to 1e-9."""
     known = tables_of("dynamics", SCENE, tmp_path / "out", *SETTINGS)
     assert_same_rows(excitation_rows(excitation.mesh, excitation.base_radius), known["excitation.csv"])
     section = ONE.dynamics
@@ -65,7 +66,7 @@ def test_figures_are_those_of_the_command(excitation: GearExcitation, tmp_path: 
     found = vibration(excitation, TORQUE, SPEEDS, settings, Accuracy(5.0, 4.0))
     assert_same_rows(list(found.rows), known["response.csv"])
     assert_same_rows(list(found.branch), known["branch.csv"])
-    assert found.facts.bodies == "elastic" and np.isfinite(found.curve("dynamic_factor_iso")).all()
+    assert not found.facts.folds_rpm and found.facts.bodies == "elastic" and np.isfinite(found.curve("dynamic_factor_iso")).all()
 
 
 def test_curves_of_an_excitation(excitation: GearExcitation) -> None:

@@ -131,7 +131,7 @@ def contact_fatigue(
     Examples:
         >>> from evolvent.fatigue import contact_fatigue
         >>> below = contact_fatigue(peak_pressure=1000.0, half_width=0.2)
-        >>> float(round(below.values["maximum_shear"].max()))
+        >>> int(below.values["maximum_shear"].max())
         300
     """
     _check(peak_pressure, half_width, friction)

@@ -25,26 +25,17 @@ import typer
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
-from evolvent.dynamics.oscillator.response import Response
-from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
-from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
-from evolvent.dynamics.results.response import largest_force, responses
-from evolvent.fem.backend import dolfinx_compat
-from evolvent.gears.gear_model import GearModel, prepare_model
-from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.dynamics import DriveSettings, GearExcitation, PairVibration, mesh_excitation, natural_speed, vibration
+from evolvent.gears import condense
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import load_scene
-from evolvent_meshes.arrays import Floats
 
 SCENE = Path(__file__).resolve().with_name("he2022.toml")
 PERCENT = (5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0)
 """Of 170 N·m: the torques of the force surface."""
 INERTIA = 7.65  # t·mm², which are 1e-3 kg·m²
 DAMPING_RATIO, BACKLASH = 0.03, 0.05  # of critical at the mean stiffness; mm along the line of action
-NOMINAL = PERCENT.index(100.0)
+AMPLITUDE = "equivalent_amplitude_um"
 PAPER = 3500.0  # r/min, of the measured resonance
 LOWEST, HIGHEST = 500.0, 1.6  # r/min; of the natural speed
 
@@ -73,38 +64,23 @@ class Figures:
     """Largest mesh force over the static one."""
 
 
-@dataclass(frozen=True, eq=False)
-class Swept:
-    """The pair over the speed, with one model of its mesh."""
-
-    pair: Drive
-    """Its oscillator."""
-    speeds: Floats
-    """(n,) [r/min]."""
-    sweep: SpeedSweep
-    """Its motions."""
-    found: dict[str, list[Response]]
-    """Figures of those running "up" and "down", at each speed."""
-
-
 def main(
     out: Annotated[Path, typer.Option(help="folder of the table and the picture")] = Path("out/he2022_dynamics"),
     quick: Annotated[bool, typer.Option(help="fewer positions and speeds")] = False,
 ) -> None:
     """Solves, prints the table, and writes it with the picture."""
-    dolfinx_compat.silence_logs()
     problem = gear_problem(load_scene(SCENE, ['mesh.level="quick"'] if quick else []))
-    gears = prepare_model(problem).model
-    excitation = excited(gears, 20 if quick else 40)
+    torques = [problem.torque * percent / 100.0 for percent in PERCENT]
+    excitation = mesh_excitation(condense(problem), torques, 20 if quick else 40)
     if MPI.COMM_WORLD.rank > 0:
         return
-    inertias, load = (INERTIA, INERTIA), float(excitation.loaded.forces[NOMINAL])
+    inertias = (INERTIA, INERTIA)
     models = {
         "F(x, φ)": DriveSettings(inertias, DAMPING_RATIO, BACKLASH),
         "k(φ) x": DriveSettings(inertias, DAMPING_RATIO, BACKLASH, damping_in_separation=True, mesh="secant"),
     }
-    pairs = {name: drive(gears.pair, excitation, load, settings) for name, settings in models.items()}
-    swept = {name: over_speed(pair, 101 if quick else 401) for name, pair in pairs.items()}
+    count = 101 if quick else 401
+    swept = {name: over_speed(excitation, problem.torque, each, count) for name, each in models.items()}
     table = [figures(name, each) for name, each in swept.items()]
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "table.csv", "w", encoding="utf-8", newline="") as stream:
@@ -115,46 +91,34 @@ def main(
     drawn(swept).savefig(out / "he2022_dynamics.png", dpi=150)
 
 
-def excited(gears: GearModel, positions: int) -> MeshExcitation:
-    """Unloaded error and loaded mesh at equidistant positions of a pitch."""
-    angles = np.array(uniform_pitch(gears.pair.pinion.z, positions).angles)
-    torques = [gears.load.torque * gears.width_factor * percent / 100.0 for percent in PERCENT]
-    loaded = loaded_mesh(gears, torques, angles)
-    return MeshExcitation(unloaded_error(RigidFlanks(gears.pair), angles, gears.load.on), loaded)
-
-
-def over_speed(pair: Drive, count: int) -> Swept:
+def over_speed(excitation: GearExcitation, torque: float, settings: DriveSettings, count: int) -> PairVibration:
     """A pair with one model of its mesh, at as many speeds from 0 as are above the lowest."""
-    speeds = pair.natural_speed * HIGHEST * np.linspace(0.0, 1.0, count)
-    speeds = speeds[speeds >= LOWEST]
-    sweep = sweep_speeds(pair.model, speeds_to_periods(speeds, pair.teeth))
-    return Swept(pair, speeds, sweep, responses(pair, sweep))
+    speeds = natural_speed(excitation, torque, settings) * HIGHEST * np.linspace(0.0, 1.0, count)
+    return vibration(excitation, torque, speeds[speeds >= LOWEST], settings)
 
 
-def figures(name: str, swept: Swept) -> Figures:
+def figures(name: str, swept: PairVibration) -> Figures:
     """The line of a model of the mesh."""
-    mean, natural = 1e-3 * swept.pair.mean_stiffness, swept.pair.natural_speed
-    size = np.array([[each.equivalent_amplitude for each in runs] for runs in swept.found.values()])
-    up, down = (
-        float(max((speed for speed, run in zip(swept.speeds, runs) if run.jumped), default=np.nan))
-        for runs in (swept.sweep.up, swept.sweep.down)
-    )
+    mean, natural = swept.facts.mean_stiffness_N_per_um, swept.natural_speed
+    size = np.array([swept.curve(AMPLITUDE, "up"), swept.curve(AMPLITUDE, "down")])
     at = int(np.argmax(size.max(axis=0)))
+    up, down = (max((row.speed_rpm for row in swept.rows if row.jumped and row.way == way), default=np.nan)
+                for way in ("up", "down"))
     return Figures(
-        name, mean, natural, mean * (PAPER / natural) ** 2, up, down, 1e3 * float(size.max()), float(swept.speeds[at]),
-        largest_force(swept.found) / swept.pair.model.load,
+        name, mean, natural, mean * (PAPER / natural) ** 2, up, down, float(size.max()), float(swept.speeds[at]),
+        max(row.dynamic_factor for row in swept.rows),
     )
 
 
-def drawn(swept: dict[str, Swept]) -> Figure:
+def drawn(swept: dict[str, PairVibration]) -> Figure:
     """Equivalent amplitude over the speed, up and down, with each model of the mesh."""
     with matplotlib.rc_context({"font.size": 10.0, "axes.grid": True, "grid.alpha": 0.3}):
         figure = Figure((9.0, 4.8), layout="constrained")
         axes = figure.add_subplot()
         for (name, each), colour in zip(swept.items(), ("#1f4e9c", "#c0392b")):
             for way, style in (("up", "-"), ("down", "--")):
-                sizes = [1e3 * response.equivalent_amplitude for response in each.found[way]]
-                axes.plot(each.speeds, sizes, style, color=colour, lw=1.4, label=f"{name}, running {way}")
+                axes.plot(each.speeds, each.curve(AMPLITUDE, way), style, color=colour, lw=1.4,
+                          label=f"{name}, running {way}")
         axes.axvline(PAPER, color="0.5", lw=1.0, ls=":")
         axes.text(PAPER, 1.0, " measured resonance", va="top", fontsize=8.0, transform=axes.get_xaxis_transform())
         axes.set_xlabel("speed [r/min]")

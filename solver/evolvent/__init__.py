@@ -1,7 +1,8 @@
 """Evolvent's solver: frictional contact of elastic bodies, and of gear pairs, with dolfinx and PETSc.
 
-The names below are the Python API of contact problems, described in docs/own_problem.md; the packages `evolvent.gears`
-and `evolvent.wear` have those of gear pairs and of wear. Each is imported when it is first used.
+The names below are the Python API of contact problems, described in docs/own_problem.md; the packages `evolvent.gears`,
+`evolvent.dynamics`, `evolvent.strength`, `evolvent.fatigue` and `evolvent.wear` have those of gear pairs. Each is
+imported when it is first used.
 """
 
 from importlib import metadata
@@ -11,7 +12,10 @@ from evolvent.fem.parallel.mpi_start import start_alone_quietly
 from evolvent_meshes.lazy_names import lazy_names
 
 if TYPE_CHECKING:
+    from evolvent import dynamics as dynamics
+    from evolvent import fatigue as fatigue
     from evolvent import gears as gears
+    from evolvent import strength as strength
     from evolvent import wear as wear
     from evolvent.contact import hertz as hertz
     from evolvent.contact.newton.snes import NotConverged as NotConverged

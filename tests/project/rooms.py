@@ -59,8 +59,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.solution": (
-        "meshes", "fem.backend", "contact.problem", "contact.step", "gears.problem", "gears", "gears.sweep",
-        "gears.pressure",
+        "meshes", "fem.backend", "contact.problem", "gears.problem", "gears", "gears.sweep",
     ),
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "meshes.gears.modifications", "scene.schema.guesses"),
@@ -86,15 +85,24 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "gears.sweep", "gears.pressure", "scene", "results.archive", "results",
         "results.tables", "results.fields", "results.drawing",
     ),
+    "results.solution": (
+        "meshes", "contact.problem", "contact.step", "gears", "gears.sweep", "gears.pressure", "gears.solution",
+        "results.drawing", "results.tables",
+    ),
     "strength.standard": ("meshes", "meshes.gears"),
     "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
     "strength": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "gears.meshing", "gears.ring",
-        "gears.two_level", "gears", "gears.sweep", "results.error_bars",
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "gears.problem", "gears.meshing", "gears.ring",
+        "gears.two_level", "gears", "gears.sweep", "gears.solution", "results.error_bars", "strength.standard",
     ),
     "strength.results": (
         "meshes", "meshes.gears", "fem", "results.error_bars", "results.tables", "results.drawing",
         "strength.standard", "strength.fatigue", "strength",
+    ),
+    "strength.solution": (
+        "meshes", "meshes.gears", "fem", "fem.backend", "gears.problem", "gears.meshing", "gears", "gears.solution",
+        "gears.sweep", "scene.schema", "results.solution", "strength.standard", "strength.fatigue", "strength",
+        "strength.results",
     ),
     "dynamics.oscillator": ("meshes", "fem.backend"),
     "dynamics.excitation": (
@@ -125,6 +133,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.oscillator",
         "dynamics.results.*", "results.tables", "results.drawing",
     ),
+    "dynamics.solution": (
+        "meshes", "meshes.gears", "gears.problem", "gears", "gears.solution", "gears.sweep", "results.solution",
+        "dynamics.oscillator", "dynamics.excitation", "dynamics", "dynamics.results", "dynamics.figures",
+    ),
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears.problem", "gears",
@@ -143,9 +155,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.solution", "dynamics", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes.gears", "fem.parallel", "gears.problem", "gears.meshing", "gears.solution",
-        "gears.sweep", "scene.schema", "scene", "results.archive", "results.tables", "strength.standard",
-        "strength.fatigue", "strength", "strength.results", "run",
+        "meshes.gears", "gears.problem", "gears.meshing", "gears.sweep", "scene.schema", "scene", "results.archive",
+        "results.tables", "strength.fatigue", "strength", "strength.results", "run",
     ),
     "run.dynamics": (
         "meshes", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
@@ -168,7 +179,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.study.results": (
         "meshes", "meshes.gears", "scene", "check", "scene.schema", "scene.schema.guesses", "results.archive",
-        "results.tables", "dynamics.results", "strength.results", "run.study.plan",
+        "results.tables", "dynamics.results.*", "strength.fatigue", "strength.results", "run.study.plan",
     ),
     "run.study.figures": ("meshes", "results.drawing", "run.study.results"),
     "run.study": (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import subprocess
 import sys
+from types import ModuleType
 
 import pytest
 
@@ -35,6 +36,9 @@ def test_packages_are_public_names() -> None:
     assert evolvent.wear.Archard.__module__ == "evolvent.wear.archard"
     assert evolvent.gears.__name__ == "evolvent.gears"
     assert {"evolvent", "evolvent.wear"} <= set(PACKAGES)
+    assert evolvent.dynamics.vibration.__module__ == "evolvent.dynamics.solution.vibration"
+    assert evolvent.strength.root_stress.__module__ == "evolvent.strength.solution.root_stress"
+    assert evolvent.fatigue.dang_van.__module__ == "evolvent.strength.fatigue.criteria"
 
 
 def test_the_names_of_the_documented_import_are_public() -> None:
@@ -56,6 +60,24 @@ def test_import_loads_no_heavy_module_before_a_name_is_used() -> None:
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert run.stdout.splitlines() == [evolvent.__version__, "True"]
+
+
+@pytest.mark.parametrize("package", [each for each in PACKAGES if each != "evolvent"])
+def test_import_of_a_package_loads_no_heavy_module(package: str) -> None:
+    """A fresh interpreter has none of the heavy libraries after the import of a public package alone."""
+    program = f"import sys, {package}\nprint([each for each in {HEAVY} if each in sys.modules])\n"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert run.stdout.splitlines() == ["[]"]
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_no_public_name_is_that_of_a_room(package: str) -> None:
+    """A function with the name of a folder or file of its package would be replaced by it once that is imported. Right:
+    a public name of a folder's is that folder itself."""
+    door = importlib.import_module(package)
+    folder = SOURCES.joinpath(*package.split("."))
+    inside = {path.stem for path in folder.iterdir() if path.suffix == ".py" or path.is_dir()}
+    assert [name for name in inside & set(door.__all__) if not isinstance(getattr(door, name), ModuleType)] == []
 
 
 def test_an_unknown_name_is_refused_with_the_nearest_one() -> None:

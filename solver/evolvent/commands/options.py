@@ -25,10 +25,7 @@ UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
 EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh", "FILE.png": "teeth.png"}
 """Placeholder of the argument of --out in the help -> an example."""
 
-ANEW = "the command has no --resume and begins anew; --overwrite replaces what an earlier call has written"
-WITHOUT_RESUME = {
-    "study": "the same command goes on with the scenes that are missing", "strength": ANEW, "fatigue": ANEW,
-}
+WITHOUT_RESUME = {"study": "the same command goes on with the scenes that are missing"}
 """Command without --resume -> what it does with earlier results."""
 RENAMED = {"--no-skip": "--exact"}
 """Old name of an option -> its present name."""

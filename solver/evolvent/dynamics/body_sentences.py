@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from evolvent.dynamics.mesh_oscillator import MeshOscillator
 from evolvent.dynamics.pair_model import RIGID, Drive
 
 BODY_HARMONICS, NEAR = (1, 2, 3), (0.9, 1.2)
@@ -17,7 +18,7 @@ def body_bands(first: float) -> list[tuple[int, float, float]]:
     return [(number, low * first / number, high * first / number) for number in BODY_HARMONICS]
 
 
-def near_body_vibration(drive: Drive, speed: float) -> bool:
+def near_body_vibration(drive: MeshOscillator, speed: float) -> bool:
     """Whether a low mesh harmonic excites the bodies' own vibration at a speed of the pinion [r/min]."""
     return any(low < speed < high for _, low, high in body_bands(drive.body_speed(1)))
 

@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from evolvent.gears.problem.hertz_estimate import HertzEstimate as HertzEstimate
     from evolvent.gears.solution.certificates import BalanceError as BalanceError
     from evolvent.gears.solution.solver import ExtendedChartWarning as ExtendedChartWarning
-    from evolvent.gears.solution.solver import PitchSolution as PitchSolution
     from evolvent.gears.solution.solver import condense as condense
-    from evolvent.gears.solution.solver import solve_pitch as solve_pitch
-    from evolvent.gears.solution.solver import solve_pitches as solve_pitches
     from evolvent.gears.solution.solver import solve_single_position as solve_single_position
     from evolvent.gears.sweep.position_result import PositionResult as PositionResult
+    from evolvent.results.solution.pitch import PitchSolution as PitchSolution
+    from evolvent.results.solution.pitch import solve_pitch as solve_pitch
+    from evolvent.results.solution.pitch import solve_pitches as solve_pitches
     from evolvent_meshes.gears.errors import GeometryError as GeometryError
     from evolvent_meshes.gears.form.support import Support as Support
     from evolvent_meshes.gears.form.web import Web as Web

@@ -47,7 +47,12 @@ class Progress:
             self._bars.stop()
 
     def stage(self, what: str, total: int | None = None, done: int = 0) -> None:
-        """Begins a stage. total: number of its items, None where it is unknown. done: items that are done already."""
+        """Begins a stage, or goes on with one of the same name. total: number of its items, None where it is unknown.
+        done: items that are done already."""
+        task = self._task
+        if task is not None and task.description == what:
+            self._bars.update(task.id, total=total, completed=done)
+            return
         self._end()
         self._bars.add_task(what, total=total, completed=done)
         self._say(what if total is None else f"{what}: {done} of {total}")

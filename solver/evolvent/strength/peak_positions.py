@@ -16,6 +16,7 @@ from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.solution.certificates import certify
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, sweep_pitch
 from evolvent.results.error_bars.peak_bounds import peak_bounds
 from evolvent.strength.root_passage import GearRoots, root_passages
@@ -73,7 +74,7 @@ def with_angles(
     """Root stress with further pinion rotations [rad], each from the state of the last one before it. Collective.
     stored: see `Stored`.
 
-    Raises NotConverged, SearchError.
+    Raises NotConverged, SearchError, BalanceError.
     """
     if not angles:
         return known
@@ -81,7 +82,9 @@ def with_angles(
 
     def solve(angle: float) -> SweptPosition:
         state = known.positions[int(np.searchsorted(stands, angle)) - 1].state
-        return next(sweep_pitch(model, Pitch((angle,)), frictions, state))
+        position = next(sweep_pitch(model, Pitch((angle,)), frictions, state))
+        certify(position.results)
+        return position
 
     def solved() -> list[SweptPosition]:
         return [stored(angle, partial(solve, angle)) for angle in angles[comm.rank :: comm.size]]

@@ -232,7 +232,7 @@ def test_force_computes_a_mesh_that_does_not_fit(
         raise Begun
 
     machine(200.0)
-    monkeypatch.setattr("evolvent.run.scene_run.run_scene", begin)
+    monkeypatch.setattr("evolvent.run.compute.compute", begin)
     monkeypatch.setattr("evolvent.gears.meshing.standing_pair.standing_pair", begin)
     with pytest.raises(Begun):
         main([command, str(ROOT / "demos/yang2022.toml"), "--out", str(tmp_path / "pair.msh"), "--force"])

@@ -100,10 +100,8 @@ def test_other_commands_validate_too(command: str, scene: Path, capsys: pytest.C
         (["mesh", "{scene}", "--out", "mesh.stl"], "allowed: a name that ends in .msh"),
         (["run", "{scene}", "--out", "{scene}"], "allowed: a directory"),
         (["plot", "nowhere"], "nowhere: found no such directory"),
-        (["plot", "{folder}"], "no summary.json in it"),
+        (["plot", "{folder}"], "no results in it"),
         (["study", "{scene}", "--out", "o", "--resume"], "leave it out: the same command goes on with the scenes that"),
-        (["strength", "{scene}", "--out", "o", "--resume"], "leave it out: the command has no --resume and begins"),
-        (["fatigue", "{scene}", "--out", "o", "--resume"], "leave it out: the command has no --resume and begins"),
         (["mesh", "{scene}", "--out", "o", "--resume"], "leave it out: the command has nothing to go on from"),
     ],
 )

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from evolvent.run.redraw import FROM_TABLES
-from evolvent.run.start import elastic_point
 from mpi4py import MPI
 
 from evolvent.commands.app import Exit
 from evolvent.results.archive.archive import Archive
 from evolvent.results.drawing.table_pictures import from_tables
+from evolvent.run.dynamics.bodies import elastic_point
+from evolvent.run.kinds.wear import Wear
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
 from evolvent_meshes.arrays import Floats
@@ -66,7 +66,7 @@ def assert_same(one: Path, other: Path, tolerance: float) -> None:
 
 def test_picture_of_the_mesh_force_is_drawn_from_tables(whole: Path) -> None:
     """One of those that `evolvent plot` draws, though the scene asks for none."""
-    (picture,) = from_tables(FROM_TABLES, whole)
+    (picture,) = from_tables(Wear.outputs.pictures, whole)
     assert picture.name == "30_mesh_force.png" and picture.draw().startswith(b"\x89PNG")
 
 

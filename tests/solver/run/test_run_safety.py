@@ -158,7 +158,7 @@ def test_truncated_file_is_named_with_its_remedy(
     name: str, out: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Every command names the file and says to move or remove it; what `plot` says is done, and works."""
-    monkeypatch.setattr("evolvent.run.redraw.pictures", lambda run: [])
+    monkeypatch.setattr("evolvent.run.kinds.run.Run.pictures", lambda run, out: [])
     path = out / name
     path.write_bytes(path.read_bytes()[:100])
     for more in ("--resume", "--overwrite"):
@@ -278,9 +278,9 @@ import sys
 from mpi4py import MPI
 from evolvent.commands.app import main
 if MPI.COMM_WORLD.rank == 0:
-    from evolvent.run import redraw
+    from evolvent.run.kinds.run import Run
     from evolvent.results.drawing.picture_files import Picture
-    redraw.pictures = lambda run: [Picture("01_a.png", lambda: b"a")]
+    Run.pictures = lambda run, out: [Picture("01_a.png", lambda: b"a")]
 scene, out, folder = sys.argv[1:]
 statuses = [main(["--version"]), main(["check", scene]), main(["plot", folder]), main(["plot", folder + "/nowhere"])]
 statuses.append(main(["mesh", scene, "--level", "quick", "--out", out]))

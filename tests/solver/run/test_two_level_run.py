@@ -13,15 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista
-from evolvent.run.coarse_run import solve_companion
-from evolvent.run.start import checked_meshes
 
 from evidence.benchmarks.gears.skips import differences
 from evolvent.gears.meshing import levelled_meshes
-from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.archive import COARSE, Archive
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.run_data import read_run
-from evolvent.run.kept_pitch import pitch_of
 from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
@@ -105,14 +102,13 @@ def test_a_finished_run_is_resumed_without_condensing(
     """The same tables; on other meshes, those of one level, the archive is refused."""
     folder = tmp_path / "out"
     shutil.copytree(out, folder)
-    monkeypatch.setattr("evolvent.run.start.prepare_model", lambda *_, **__: pytest.fail("condensed again"))
     scene = load_scene(folder / "scene.toml", ["output.deformation=false", *BARE[:3]])
-    quietly(Run.of(scene), folder, resume=True)
+    quietly(Run.of(scene), folder, resume=True, prepare=lambda *_: pytest.fail("condensed again"))
     assert summary_of(folder)["positions"] == summary_of(out)["positions"]
     assert summary_of(folder)["dofs"] == summary_of(out)["dofs"]
     monkeypatch.setattr(levelled_meshes, "MOST_DOFS", 10**9)
     with pytest.raises(ArchiveError, match="on others"):
-        checked_meshes(scene, Archive(folder, scene))
+        quietly(Run.of(scene), folder, resume=True)
 
 
 @pytest.mark.slow
@@ -130,15 +126,11 @@ def test_one_mesh_gives_the_same_within_a_hundredth(out: Path, levels: None, tmp
 
 
 @pytest.mark.slow
-def test_the_companion_is_twice_as_coarse_in_levels(out: Path, levels: None) -> None:
+def test_the_companion_is_twice_as_coarse_in_levels(out: Path) -> None:
     """Half of the rows and of the layers of the run's finest level, and coarser sectors."""
-    from mpi4py import MPI
-
-    scene = small_scene()
-    companion = solve_companion(scene, pitch_of(scene), MPI.COMM_SELF)
-    assert companion.run is not None, companion.failure
     run = read_run(out)
-    for fine, coarse in zip(run.shapes, companion.run.shapes):
+    companion = Archive(out, run.scene, part=COARSE).read_gears()
+    for fine, coarse in zip(run.shapes, companion):
         assert 2 * len(fine.facets["flank"]) / 9 < len(coarse.facets["flank"]) < 2 * len(fine.facets["flank"]) / 5
         assert len(coarse.points) < 0.4 * len(fine.points)
 

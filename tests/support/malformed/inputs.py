@@ -210,10 +210,10 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     # plot
     "plot: nothing": (["plot"], "DIR", "nothing", "where a command has put its results"),
     "plot: empty": (["plot", ""], "DIR", "an empty text", "where a command has put its results"),
-    "plot: no such folder": (["plot", "{folder}/no"], "{folder}/no", "no such directory", "of a finished run"),
-    "plot: a name too long": (["plot", "n" * 5000], "n" * 5000, "no such directory", "of a finished run"),
-    "plot: a file": (["plot", SCENE], SCENE, "no such directory", "the --out of a finished run"),
-    "plot: another folder": (["plot", "{folder}"], "{folder}", "no summary.json in it", "of a finished run"),
+    "plot: no such folder": (["plot", "{folder}/no"], "{folder}/no", "no such directory", "of a finished command"),
+    "plot: a name too long": (["plot", "n" * 5000], "n" * 5000, "no such directory", "of a finished command"),
+    "plot: a file": (["plot", SCENE], SCENE, "no such directory", "the --out of a finished command"),
+    "plot: another folder": (["plot", "{folder}"], "{folder}", "no results in it", "of a finished command"),
     "plot: two folders": (["plot", "{folder}", "b"], "arguments", '"b"', "leave it out"),
     "plot: unknown option": (["plot", "{folder}", "--dpi", "300"], "--dpi", "an unknown option", "plot --help"),
     # info

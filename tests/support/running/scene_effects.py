@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from evolvent.run.strength.strength_run import NO_DEEP_TEETH
 
 from evolvent.check.check_report import overview
 from evolvent.dynamics.of_scene import drive_settings, operating_point
@@ -15,6 +14,7 @@ from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.iso_dynamic_factor import method_b
 from evolvent.run.dynamics.speeds import map_list, sweep_list
 from evolvent.run.dynamics.vibration import accuracy
+from evolvent.run.kinds.strength import NO_DEEP_TEETH
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent.scene.skips import wanted_output

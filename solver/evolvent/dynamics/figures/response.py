@@ -18,7 +18,10 @@ SUPERHARMONICS = (1, 2, 3, 4)
 LEAST_SHARE, FAR_ABOVE = 5.0, 2.0
 """Least end of the axis of the time out of contact [%]; and largest amplitude of steady states, over that of the runs,
 that the amplitude's axis shows."""
+TITLE = "Vibration over the speed: running up, running down, and the steady states between"
 ISO = "K_v of ISO 6336-1"
+Panels = tuple[Axes, Axes, Axes]
+"""Axes of amplitude, dynamic factor and time out of contact."""
 MOST_FOLDS = 8
 """Speeds at which the branch turns back that the foot names."""
 BODIES = "#d9a441"
@@ -40,57 +43,97 @@ def response_picture(known: DriveSummary, rows: Sequence[ResponseRow], branch: S
 def response_figure(known: DriveSummary, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> Figure:
     """Equivalent amplitude, dynamic factor with that of ISO 6336-1, and separated share over the speed, up and down,
     and the unstable steady states between."""
-    runs = {way: [row for row in rows if row.way == way] for way in ("up", "down")}
-    speeds = np.array([row.speed_rpm for row in runs["up"]])
     figure = sheet(
-        "Vibration over the speed: running up, running down, and the steady states between",
+        TITLE,
         f"Natural speed {known.natural_speed_rpm:.0f} r/min, of {known.moving_mass_kg:.4g} kg on a mean "
         f"{_stiffness_name(known)} stiffness in motion of {known.moving_stiffness_N_per_um:.1f} N/µm, with "
         f"{known.bodies} gear bodies.",
         (11.0, 8.6),
     )
-    amplitude, factor, apart = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 2.0, 1.0))
-    for way, colour, style in (("up", PINION, "-"), ("down", WHEEL, "--")):
-        columns = [
-            (row.equivalent_amplitude_um, row.dynamic_factor, 100.0 * row.separated_share) for row in runs[way]
-        ]
-        for axes, values in zip((amplitude, factor, apart), np.array(columns).T):
-            axes.plot(speeds, values, style, color=colour, label=f"running {way}")
-            _mark_unrepeated(axes, speeds, values, runs[way])
-        if way == "up":
-            _draw_errors(amplitude, runs[way], "equivalent_amplitude_um")
-            _draw_errors(factor, runs[way], "dynamic_factor")
-    alike = all(row.repeats == 1 for row in rows)
-    hollow = "" if alike else " Hollow: a motion that does not repeat with every mesh."
-    _draw_branch(amplitude, branch)
+    panels = _panels(figure)
+    _draw_runs(panels, rows, branch)
+    up = [row for row in rows if row.way == "up"]
     if _has_iso(known):
-        _draw_iso(factor, known, runs["up"])
-    for axes in (amplitude, factor, apart):
-        for part in SUPERHARMONICS:
-            axes.axvline(known.natural_speed_rpm / part, color=FAINT, lw=0.8, ls=":", zorder=0)
-        axes.set_ylim(bottom=0.0)
-    amplitude.set_xlim(speeds[0], speeds[-1])
-    beyond = _limit(amplitude, rows, [row for row in branch if speeds[0] <= row.speed_rpm <= speeds[-1]])
-    limits = [*_draw_bodies((amplitude, factor, apart), known), *_draw_surface(factor, known, rows)]
-    apart.set_ylim(top=max(LEAST_SHARE, apart.get_ylim()[1]))
-    for part in SUPERHARMONICS:
-        name = "natural" if part == 1 else f"1/{part}"
-        amplitude.text(known.natural_speed_rpm / part, 0.995, f" {name}", va="top", color=INK, fontsize=8.0,
-                       transform=amplitude.get_xaxis_transform(), clip_on=True)
+        _draw_iso(panels[1], known, up)
+    words = _finish(panels, known.natural_speed_rpm, rows, branch)
+    limits = [*_draw_bodies(panels, known), *_draw_surface(panels[1], known, rows)]
+    foot(
+        figure,
+        words,
+        _folds(known, np.array([row.speed_rpm for row in up])),
+        *limits,
+        _iso_words(known),
+        *([BAND] if any(np.isfinite(row.dynamic_factor_error) for row in up) else []),
+    )
+    return figure
+
+
+def given_mesh_picture(
+    natural_speed: float, words: str, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]
+) -> bytes:
+    """PNG of `given_mesh_figure`."""
+    with styled():
+        return png(given_mesh_figure(natural_speed, words, rows, branch))
+
+
+def given_mesh_figure(
+    natural_speed: float, words: str, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]
+) -> Figure:
+    """Figure of an oscillator on a given mesh, as `response_figure`. natural_speed: [r/min]. words: subtitle."""
+    figure = sheet(TITLE, words, (11.0, 8.6))
+    panels = _panels(figure)
+    _draw_runs(panels, rows, branch)
+    foot(figure, _finish(panels, natural_speed, rows, branch))
+    return figure
+
+
+def _panels(figure: Figure) -> Panels:
+    """Axes of amplitude, dynamic factor and time out of contact."""
+    amplitude, factor, apart = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 2.0, 1.0))
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
     factor.set_ylabel("largest mesh force\nover the static one")
     apart.set_ylabel("out of contact\n[% of the time]")
     apart.set_xlabel("speed of the pinion [r/min]")
+    return amplitude, factor, apart
+
+
+def _draw_runs(panels: Panels, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> None:
+    """Draws the motions running up and down, with error bars where they are known, and all steady states."""
+    for way, colour, style in (("up", PINION, "-"), ("down", WHEEL, "--")):
+        runs = [row for row in rows if row.way == way]
+        speeds = np.array([row.speed_rpm for row in runs])
+        columns = [(row.equivalent_amplitude_um, row.dynamic_factor, 100.0 * row.separated_share) for row in runs]
+        for axes, values in zip(panels, np.array(columns).T):
+            axes.plot(speeds, values, style, color=colour, label=f"running {way}")
+            _mark_unrepeated(axes, speeds, values, runs)
+        if way == "up":
+            _draw_errors(panels[0], runs, "equivalent_amplitude_um")
+            _draw_errors(panels[1], runs, "dynamic_factor")
+    _draw_branch(panels[0], branch)
+
+
+def _finish(
+    panels: Panels, natural_speed: float, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]
+) -> str:
+    """Marks the natural speed [r/min] and its parts, and sets the limits of the axes; returns the sentences on the
+    marks."""
+    amplitude, _, apart = panels
+    first, last = (end(row.speed_rpm for row in rows) for end in (min, max))
+    for axes in panels:
+        for part in SUPERHARMONICS:
+            axes.axvline(natural_speed / part, color=FAINT, lw=0.8, ls=":", zorder=0)
+        axes.set_ylim(bottom=0.0)
+    amplitude.set_xlim(first, last)
+    beyond = _limit(amplitude, rows, [row for row in branch if first <= row.speed_rpm <= last])
+    apart.set_ylim(top=max(LEAST_SHARE, apart.get_ylim()[1]))
+    for part in SUPERHARMONICS:
+        name = "natural" if part == 1 else f"1/{part}"
+        amplitude.text(natural_speed / part, 0.995, f" {name}", va="top", color=INK, fontsize=8.0,
+                       transform=amplitude.get_xaxis_transform(), clip_on=True)
     amplitude.legend(loc="upper right")
-    foot(
-        figure,
-        "Dotted: the natural speed and its half, third and quarter." + hollow + beyond,
-        _folds(known, speeds),
-        *limits,
-        _iso_words(known),
-        *([BAND] if any(np.isfinite(row.dynamic_factor_error) for row in runs["up"]) else []),
-    )
-    return figure
+    alike = all(row.repeats == 1 for row in rows)
+    hollow = "" if alike else " Hollow: a motion that does not repeat with every mesh."
+    return "Dotted: the natural speed and its half, third and quarter." + hollow + beyond
 
 
 def _stiffness_name(known: DriveSummary) -> str:

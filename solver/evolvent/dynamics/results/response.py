@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.dynamics.body_sentences import near_body_vibration
+from evolvent.dynamics.mesh_oscillator import MeshOscillator
 from evolvent.dynamics.oscillator.response import Response, response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
@@ -17,6 +18,7 @@ from evolvent.gears.problem.iso_dynamic_factor import MethodB
 from evolvent.results.tables.table import Record, Table
 
 UM = 1e3  # µm per mm
+Responses = dict[str, list[Response]]  # at all speeds, "up" and "down"
 
 
 @dataclass(frozen=True)
@@ -200,14 +202,13 @@ RESPONSE, BRANCH = Table("response.csv", ResponseRow), Table("branch.csv", Branc
 DYNAMICS = Record("dynamics.json", DriveSummary)
 
 
-def speed_of(drive: Drive, period: float) -> float:
+def speed_of(drive: MeshOscillator, period: float) -> float:
     """Speed of the pinion [r/min] at a mesh period [s]."""
     return 60.0 / (drive.teeth * period)
 
 
-def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
-    """Responses at all speeds, "up" and "down"; of a motion that grows beyond measure that of the last mesh period
-    within."""
+def responses(drive: MeshOscillator, swept: SpeedSweep) -> Responses:
+    """Responses at all speeds; of a motion that grows beyond measure that of the last mesh period within."""
     return {
         way: [
             response(drive.model, float(period), run.motion.state, 1 if run.escaped else run.repeats)
@@ -218,28 +219,27 @@ def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
 
 
 def response_rows(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], iso: MethodB, errors: VibrationErrors
+    drive: MeshOscillator, swept: SpeedSweep, found: Responses, iso: MethodB | None, errors: VibrationErrors
 ) -> Iterator[ResponseRow]:
-    """Rows of response.csv: up, then down, at ascending speeds."""
+    """Rows of response.csv: up, then down, at ascending speeds. iso: None where no gears are known."""
     for way, runs in (("up", swept.up), ("down", swept.down)):
         bars = UM * errors.amplitude[way], errors.dynamic_factor[way]
-        for period, run, each, amplitude_error, factor_error in zip(swept.periods, runs, found[way], *bars):
+        for period, run, each, size_error, factor_error in zip(swept.periods, runs, found[way], *bars):
             speed = speed_of(drive, float(period))
             yield ResponseRow(
                 speed_rpm=speed, way=way, repeats=run.repeats, jumped=run.jumped,
-                equivalent_amplitude_um=UM * each.equivalent_amplitude,
-                equivalent_amplitude_um_error=float(amplitude_error),
+                equivalent_amplitude_um=UM * each.equivalent_amplitude, equivalent_amplitude_um_error=float(size_error),
                 elastic_equivalent_amplitude_um=UM * each.elastic_equivalent_amplitude,
                 **{f"harmonic_{r}_um": UM * float(size) for r, size in enumerate(each.total, 1)},
                 **{f"force_harmonic_{r}_N": float(size) for r, size in enumerate(each.force, 1)},
                 largest_force_N=each.largest_force, smallest_force_N=each.smallest_force,
                 dynamic_factor=each.largest_force / drive.model.load, dynamic_factor_error=float(factor_error),
-                dynamic_factor_iso=iso.factor(speed), separated_share=each.separated_share,
+                dynamic_factor_iso=math.nan if iso is None else iso.factor(speed), separated_share=each.separated_share,
                 back_contact_share=each.back_contact_share, near_body_vibration=near_body_vibration(drive, speed),
             )
 
 
-def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
+def branch_rows(drive: MeshOscillator, swept: SpeedSweep) -> Iterator[BranchRow]:
     """Rows of branch.csv: from the lowest speed to the highest, through all folds."""
     gaps = swept.branch.gaps
     for i, (state, stable) in enumerate(zip(swept.branch.points, swept.branch.stable)):
@@ -251,7 +251,7 @@ def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
         )
 
 
-def jumps(drive: Drive, runs: Iterable[Running]) -> tuple[float, ...]:
+def jumps(drive: MeshOscillator, runs: Iterable[Running]) -> tuple[float, ...]:
     """Speeds [r/min] at which a pair leaves the branch, in the order of its motions."""
     return tuple(speed_of(drive, run.left_at) for run in runs if run.left_at is not None)
 

@@ -90,6 +90,13 @@ class VibrationErrors:
     """Sentences on missing error bars, and on jumps that are found on one excitation alone."""
 
 
+def unknown_errors(speeds: int, up: int = 0, down: int = 0) -> VibrationErrors:
+    """Error bars of a vibration over so many speeds, with so many jumps running up and down, that was computed on one
+    excitation alone: none is known."""
+    each, jumps = np.full(speeds, np.nan), {"up": (np.nan,) * up, "down": (np.nan,) * down}
+    return VibrationErrors({way: each for way in WAYS}, {way: each for way in WAYS}, jumps, np.nan, np.nan)
+
+
 def vibration_errors(own: Vibration, others: Sequence[OtherVibration], mean_stiffness: float) -> VibrationErrors:
     """Error bars of a vibration that was computed on other excitations, too; unknown where there are none, or one of
     them failed.

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
-from evolvent.dynamics.pair_model import Drive
+from evolvent.dynamics.mesh_oscillator import FROM, TO
+from evolvent.dynamics.mesh_oscillator import sweep_at as sweep_at
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.arrays import Floats
 
-FROM, TO = 1.0 / 6.0, 1.6
-"""Lowest and highest speed that are swept by default, over the natural one."""
 WAYS = 2
 """Number of motions that are computed at a speed: running up and running down."""
 SAME_SPEED = 1e-9
@@ -32,14 +28,6 @@ def map_list(natural_speed: float, section: DynamicsSection) -> Floats:
     natural_speed: under the scene's torque, whatever that of the map's line is.
     """
     return _even(natural_speed, section, section.map_speeds)
-
-
-def sweep_at(pair: Drive, speeds: Floats, computed: Callable[[], None] = lambda: None) -> SpeedSweep:
-    """A pair that runs up and down through ascending speeds (n,) [r/min]. computed: called `WAYS` times a speed. Raises
-    NoSteadyState."""
-    slowest, fastest = speeds_to_periods(pair.natural_speed * np.array([FROM, TO]), pair.teeth)
-    periods = speeds_to_periods(speeds, pair.teeth)
-    return sweep_speeds(pair.model, periods, (float(slowest), float(fastest)), computed)
 
 
 def _even(natural_speed: float, section: DynamicsSection, count: int) -> Floats:

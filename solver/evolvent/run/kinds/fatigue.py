@@ -27,11 +27,9 @@ from evolvent.strength.fatigue.flank_loads import FlankLoads, LoadedPosition
 from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS, fatigue_facts, warnings_of
 from evolvent.strength.results.fatigue_rows import FATIGUE, FATIGUE_DEPTH, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_SECTION
 from evolvent.strength.results.fatigue_tables import depth_rows, fatigue_rows, life_rows, map_rows, section_rows
-from evolvent.strength.results.friction_fatigue import FrictionFatigue
+from evolvent.strength.results.friction_fatigue import FrictionFatigue, zone_ends
 from evolvent.strength.results.pictures import FATIGUE_PICTURE
 
-AT_END = 1e-6
-"""Tip-edge zones shorter than this [mm] are ignored."""
 TABLES = FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH, FATIGUE_SECTION, FATIGUE_FACTS
 
 
@@ -109,7 +107,7 @@ def _positions(run: RunData, index: int) -> list[LoadedPosition]:
 def _fatigue(run: RunData, index: int, error: float, coarse: RunData | None) -> FrictionFatigue:
     """Fatigue of both flanks at the friction coefficient with this index. error: of the largest pressure [MPa]."""
     gears = _flanks(run, index, run.inner_path)
-    ends = tuple(x for x, end in zip(run.inner_path, run.pair.path_of_contact) if abs(x - end) > AT_END)
+    ends = zone_ends(run.pair, run.inner_path)
     largest = float(gears[0].loads.peak.max(initial=0.0)) or float("nan")
     beside = None if coarse is None else _flanks(coarse, index, run.inner_path)
     return FrictionFatigue(run.frictions[index], gears, error / largest, ends, beside)

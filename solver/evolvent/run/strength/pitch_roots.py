@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.solution.certificates import certify
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.results.archive.archive import COARSE
 from evolvent.results.archive.run_cost import Timings
@@ -19,9 +16,8 @@ from evolvent.run.kept_pitch import Meshes, kept_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
-from evolvent.strength.peak_positions import Roots, SweptRoots, roots_of, with_angles, with_peaks
-from evolvent.strength.standard.root_stress import RootLoad
-from evolvent_meshes.gears.member import Member
+from evolvent.strength.certified_roots import certified_roots
+from evolvent.strength.peak_positions import Roots
 
 
 @dataclass(frozen=True)
@@ -70,33 +66,16 @@ def pitch_roots(call: Call, scene: Scene, meshes: Meshes, angles: Sequence[float
     Raises MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, ArchiveError, WriteError.
     """
     pitch = kept_pitch(call, scene, meshes)
-    problem, frictions, comm = meshes.problem(pitch.scene), scene.contact.friction, call.comm
+    problem = meshes.problem(pitch.scene)
     gears = pitch.gears or call.gears(problem, meshes.mesh, shown=not meshes.part)
-    uniform, model = pitch.solved.positions, replace(gears.model, deflected=pitch.solved.deflected)
 
     def stored(angle: float, solve: Callable[[], SweptPosition]) -> SweptPosition:
         known = pitch.archive.read_between(angle, problem.pair) if call.resume else None
         if known is None:
             known = solve()
-            certify(known.results)
             pitch.archive.write_between(known)
         return known
 
-    every = SweptRoots(uniform, on_first(comm, lambda: roots_of(model, uniform)))
-    wanted = _outer_points(problem) if angles is None else angles
-    every = with_angles(model, every, wanted, frictions, comm, stored)
-    if angles is None:  # after the outer points, which narrow the intervals, too
-        every = with_peaks(model, every, frictions, comm, stored)
-    known = {each.angle for each in uniform}
-    further = sorted(each.angle for each in every.positions if each.angle not in known)
+    found = certified_roots(gears.model, problem, pitch.solved, scene.contact.friction, call.comm, angles, stored)
     edges = call.on_first(lambda: tip_edge_contact(pitch.run_data()))
-    return PitchRoots(tuple(further), every.roots, pitch.scene, pitch.timings, edges)
-
-
-def _outer_points(problem: GearProblem) -> list[float]:
-    """Pinion rotations in [0, pitch) at which teeth of spur gears are loaded at `RootLoad.outer_point` [rad]."""
-    if problem.pair.pinion.helix_angle_deg > 0.0:
-        return []
-    loads = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)
-    pitch = 2.0 * math.pi / problem.pair.pinion.z
-    return [load.tooth_rotation(load.outer_point.below_tip) % pitch for load in loads]
+    return PitchRoots(found.further, found.roots, pitch.scene, pitch.timings, edges)

@@ -10,10 +10,13 @@ import numpy as np
 from evolvent.strength.fatigue.criterion import Criterion
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.pair import GearPair
 
 NEGLIGIBLE = 1e-4
 """Stress over the contact pressure below which it counts as zero. Changes over it, and lives by them, would have no
 meaning."""
+AT_END = 1e-6
+"""Tip-edge zones shorter than this [mm] are ignored."""
 BESIDE_ZONE = 0.02
 """Distance from a tip-edge zone within which a point counts as beside it, over the path between the zones."""
 
@@ -37,6 +40,11 @@ class FrictionFatigue:
         """Whether a place lies beside a tip-edge zone."""
         path = self.gears[0].loads.roll_distance
         return any(abs(roll_distance - end) < BESIDE_ZONE * float(np.ptp(path)) for end in self.zone_ends)
+
+
+def zone_ends(pair: GearPair, inner: tuple[float, float]) -> tuple[float, ...]:
+    """Roll distances [mm] at which tip-edge zones begin. inner: those between which no tip edge bears."""
+    return tuple(x for x, end in zip(inner, pair.path_of_contact) if abs(x - end) > AT_END)
 
 
 def compared_point(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str) -> tuple[int, int] | None:

@@ -174,7 +174,7 @@ def test_run_warns_of_modifications_before_it_computes(
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("evolvent.run.scene_run.sweep_scene", stop)
+    monkeypatch.setattr("evolvent.run.kinds.run.kept_pitch", stop)
     command = ["run", "demos/he2022.toml", "--quiet", "--set", "pair.misalignment_um=1000", "--out", f"{tmp_path}/out"]
     assert main(command) == Exit.FAILED
     said_first = capsys.readouterr().err

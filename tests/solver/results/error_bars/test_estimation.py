@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.error_bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
 from evidence.solved_run import solved_run
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.gears.gear_model import Mesher
+from evolvent.gears.gear_model import Mesher, Preparation, prepare_model
 from evolvent.gears.meshing.companion_meshes import coarser, companion_mesh
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -32,7 +33,6 @@ from evolvent.results.engagement import engagement
 from evolvent.results.error_bars.compared import Compared, Curve
 from evolvent.results.error_bars.estimation import Companion, errors_between, estimated_errors
 from evolvent.results.run_data import RunData, SolvedPosition, read_run
-from evolvent.run import coarse_run
 from evolvent.run.kept_pitch import pitch_of
 from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
@@ -230,8 +230,7 @@ def test_run_reports_and_archives_its_error_bars(tmp_path: Path, monkeypatch: py
         names = [name for name in PLANE_FIGURES if name != "loss_percent" or row["friction"]]
         assert all(0.0 < bars[name] < row[name] for name in names)
         assert (row["face_load_factor"], bars["face_load_factor"]) == (1.0, 0.0)
-    monkeypatch.setattr(coarse_run, "prepare_model", fails)
-    quietly(Run.of(scene), tmp_path, resume=True)
+    quietly(Run.of(scene), tmp_path, resume=True, prepare=fails)
     assert summary(tmp_path)["frictions"] == found["frictions"]
 
 
@@ -239,8 +238,7 @@ def test_run_without_companion_gives_the_reason(tmp_path: Path, monkeypatch: pyt
     """Where the companion does not converge the run is complete all the same, without bars and with the reason; so it
     is where none are asked for."""
     scene = spur_scene(*SHORT)
-    monkeypatch.setattr(coarse_run, "prepare_model", fails)
-    quietly(Run.of(scene), tmp_path)
+    quietly(Run.of(scene), tmp_path, prepare=fails)
     assert "it rained" in summary(tmp_path)["estimated_error"]["missing"]
     assert [row["estimated_error"] for row in summary(tmp_path)["frictions"]] == [None, None]
     without = spur_scene(*SHORT, "output.error_bars=false")
@@ -260,14 +258,16 @@ def test_error_bars_follow_the_output_that_the_scene_asks_for(tmp_path: Path, mo
     assert found["scene"]["output"]["error_bars"] is False
     assert [row["estimated_error"] for row in found["frictions"]] == [None, None]
     assert read_run(tmp_path).errors == NOT_ESTIMATED
-    monkeypatch.setattr(coarse_run, "prepare_model", fails)
-    quietly(Run.of(with_bars), tmp_path, resume=True)
+    quietly(Run.of(with_bars), tmp_path, resume=True, prepare=fails)
     again, bars = summary(tmp_path), [row["estimated_error"] for row in first["frictions"]]
     assert [row["estimated_error"] for row in again["frictions"]] == bars
 
 
-def fails(*_: object) -> None:
-    raise NotConverged("it rained")
+def fails(problem: GearProblem, comm: MPI.Comm, mesh: Mesher, meshed: Callable[[], None]) -> Preparation:
+    """Prepares gears, but not those of the companion."""
+    if mesh is companion_mesh:
+        raise NotConverged("it rained")
+    return prepare_model(problem, comm, mesh, meshed)
 
 
 @pytest.mark.mpi

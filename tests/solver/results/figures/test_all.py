@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from evolvent.run.redraw import plot_folder
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
@@ -24,6 +23,7 @@ from evolvent.results.figures.stress import engagement_stress, running_median, s
 from evolvent.results.mesh_facts import few_cells_across
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.run.kinds.redraw import plot_folder
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member

@@ -18,7 +18,6 @@ from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import SceneError, load_scene
 from tests.support.gear_cases import spur_scene
 from tests.support.quiet import quietly
-from tests.support.running.redrawn import redrawn
 
 SHORT = (
     "mesh.level=quick", "sweep.positions=3", "contact.friction=[0.0]", "output.pictures=false", "output.fields=false",
@@ -29,7 +28,7 @@ SHORT = (
 def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Half and all of the torque: two folders with the torque in their summaries, a line each in the table that repeats
     their figures; the gears and their coarse companion are condensed once each. Resumed, nothing is condensed. The
-    scene that a run leaves gives the same figures alone. `evolvent plot` draws the picture again."""
+    scene that a run leaves gives the same figures alone."""
     calls, condensed = [], gear_loads.condensed_gears
 
     def counted(*given: object, **named: object) -> object:
@@ -57,7 +56,6 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
         for key in ("transmission_error_peak_to_peak_um", "max_pressure_MPa"):
             assert float(row[key]) == pytest.approx(figures[key], rel=1e-8)
             assert float(row[key + "_error"]) == pytest.approx(figures["estimated_error"][key], rel=1e-8)
-    assert redrawn(out, tmp_path) == {"loads.png"}
     quietly(Loads.of(scene, [50.0, 100.0]), out, resume=True)
     assert len(calls) == 2
     quietly(Run.of(load_scene(folders[0] / "scene.toml")), tmp_path / "alone")

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from evolvent.commands.app import main
+from evolvent.gears.gear_model import Preparation, prepare_model
 from evolvent.gears.meshing.root_meshes import RootMesh
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
 from evolvent.run.folder_checks import STUDY
 from evolvent.run.kinds.strength import Strength
-from evolvent.run.strength import strength_run
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshError
@@ -131,35 +134,38 @@ def test_a_short_gauge_finds_the_stress(tmp_path: Path) -> None:
     assert not (tmp_path / "none").exists()
 
 
-def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path) -> None:
     """Tables as without, and a sentence with the reason."""
 
-    def refuse(*_: object, **__: object) -> None:
-        raise MeshError("too coarse")
+    def refuse(problem: GearProblem, comm: MPI.Comm, mesh: RootMesh, meshed: Callable[[], None]) -> Preparation:
+        if mesh.coarse:
+            raise MeshError("too coarse")
+        return prepare_model(problem, comm, mesh, meshed)
 
-    monkeypatch.setattr(strength_run, "scene_root_meshes", lambda _: (RootMesh(), refuse))
-    *_, said = quietly(Strength.of(scene()), tmp_path)
+    *_, said = quietly(Strength.of(scene()), tmp_path, prepare=refuse)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
 
 
-def test_a_folder_in_use_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_in_use_is_refused(tmp_path: Path) -> None:
     """Another run computes into the folder: refused before anything is meshed."""
-    monkeypatch.setattr(strength_run, "pitch_roots", lambda *_, **__: pytest.fail("meshed"))
     with locked(tmp_path), pytest.raises(FolderError, match="computes into, found process"):
-        quietly(Strength.of(scene()), tmp_path)
+        quietly(Strength.of(scene()), tmp_path, prepare=meshed_in_vain)
 
 
-def test_the_folder_of_a_study_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_folder_of_a_study_is_refused(tmp_path: Path) -> None:
     """Before anything is meshed, also with --overwrite: the table of the study is of other scenes."""
-    monkeypatch.setattr(strength_run, "pitch_roots", lambda *_, **__: pytest.fail("meshed"))
     (tmp_path / STUDY).write_text("{}")
     with pytest.raises(FolderError, match=r"found a study \(study\.json\); allowed: a folder without"):
-        quietly(Strength.of(scene()), tmp_path, overwrite=True)
+        quietly(Strength.of(scene()), tmp_path, overwrite=True, prepare=meshed_in_vain)
+
+
+def meshed_in_vain(*_: object) -> Preparation:
+    pytest.fail("meshed")
 
 
 def test_results_are_not_replaced_unasked(out: Path, tmp_path: Path) -> None:
     """A second call is refused and says what to do; a file that no call has written stays, also with --overwrite."""
-    with pytest.raises(FolderError, match="--overwrite computes it anew"):
+    with pytest.raises(FolderError, match="--overwrite removes them and computes anew"):
         quietly(Strength.of(scene()), out)
     (tmp_path / "strength.csv").write_text("mine")
     with pytest.raises(FolderError, match=r"strength\.csv"):

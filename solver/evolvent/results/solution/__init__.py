@@ -1,0 +1,1 @@
+"""Results of gears from Python, which draw and write themselves."""

@@ -1,0 +1,1 @@
+"""Root stress and contact fatigue of gear pairs from Python."""

@@ -58,7 +58,8 @@ def test_pitch_has_its_positions_in_order(call: Call) -> None:
     pitch = kept_pitch(call, scene)
     stored = pitch.archive.read_sweep(scene.gear_pair())
     assert [position.closes for position in stored] == [False] * (len(stored) - 1) + [True]
-    assert [each.angle for each in pitch.solved.positions] == [2.0 * np.pi / 16 / 3 * k for k in range(3)]
+    step = 2.0 * np.pi / scene.pinion.teeth / 3
+    assert [each.angle for each in pitch.solved.positions] == [step * k for k in range(3)]
     last, state = stored[-1].state, pitch.archive.read_state(scene.gear_pair())
     assert state is not None and last.beyond_nominal == state.beyond_nominal
     assert last.histories[0] is not None and state.histories[0] is not None

@@ -158,7 +158,7 @@ def test_truncated_file_is_named_with_its_remedy(
     name: str, out: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Every command names the file and says to move or remove it; what `plot` says is done, and works."""
-    monkeypatch.setattr("evolvent.run.kinds.run.Run.pictures", lambda run, out: [])
+    monkeypatch.setattr("evolvent.results.figures.all.pictures", lambda run: [])
     path = out / name
     path.write_bytes(path.read_bytes()[:100])
     for more in ("--resume", "--overwrite"):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.error_bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
 from evidence.solved_run import solved_run
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.gears.gear_model import Mesher, Preparation, prepare_model
+from evolvent.gears.gear_model import Mesher
 from evolvent.gears.meshing.companion_meshes import coarser, companion_mesh
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -42,7 +41,7 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.splitting import halved
 from evolvent_meshes.sector.section import SectorResolution
 from tests.support.gear_cases import spur_scene
-from tests.support.quiet import quietly
+from tests.support.quiet import prepared_without, quietly
 from tests.support.running.processes import BROKEN_RUN, RunScript
 from tests.support.synthetic_run import synthetic_run
 
@@ -230,15 +229,18 @@ def test_run_reports_and_archives_its_error_bars(tmp_path: Path, monkeypatch: py
         names = [name for name in PLANE_FIGURES if name != "loss_percent" or row["friction"]]
         assert all(0.0 < bars[name] < row[name] for name in names)
         assert (row["face_load_factor"], bars["face_load_factor"]) == (1.0, 0.0)
-    quietly(Run.of(scene), tmp_path, resume=True, prepare=fails)
+    quietly(Run.of(scene), tmp_path, resume=True, prepare=COMPANION_FAILS)
     assert summary(tmp_path)["frictions"] == found["frictions"]
+
+
+COMPANION_FAILS = prepared_without(companion_mesh, NotConverged("it rained"))
 
 
 def test_run_without_companion_gives_the_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the companion does not converge the run is complete all the same, without bars and with the reason; so it
     is where none are asked for."""
     scene = spur_scene(*SHORT)
-    quietly(Run.of(scene), tmp_path, prepare=fails)
+    quietly(Run.of(scene), tmp_path, prepare=COMPANION_FAILS)
     assert "it rained" in summary(tmp_path)["estimated_error"]["missing"]
     assert [row["estimated_error"] for row in summary(tmp_path)["frictions"]] == [None, None]
     without = spur_scene(*SHORT, "output.error_bars=false")
@@ -258,16 +260,9 @@ def test_error_bars_follow_the_output_that_the_scene_asks_for(tmp_path: Path, mo
     assert found["scene"]["output"]["error_bars"] is False
     assert [row["estimated_error"] for row in found["frictions"]] == [None, None]
     assert read_run(tmp_path).errors == NOT_ESTIMATED
-    quietly(Run.of(with_bars), tmp_path, resume=True, prepare=fails)
+    quietly(Run.of(with_bars), tmp_path, resume=True, prepare=COMPANION_FAILS)
     again, bars = summary(tmp_path), [row["estimated_error"] for row in first["frictions"]]
     assert [row["estimated_error"] for row in again["frictions"]] == bars
-
-
-def fails(problem: GearProblem, comm: MPI.Comm, mesh: Mesher, meshed: Callable[[], None]) -> Preparation:
-    """Prepares gears, but not those of the companion."""
-    if mesh is companion_mesh:
-        raise NotConverged("it rained")
-    return prepare_model(problem, comm, mesh, meshed)
 
 
 @pytest.mark.mpi

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from evidence.calls import temporary_call
+from evolvent.gears import gear_model
+from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.store import ArchiveError
-from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.excitation import loaded_pitch
 from evolvent.run.dynamics.kept_positions import KeptPositions
 from evolvent.run.dynamics.scene_torques import scene_torques
@@ -23,7 +24,7 @@ from evolvent.scene.scene import SceneError
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.gear_cases import model_of, spur_scene, swept
-from tests.support.quiet import quietly
+from tests.support.quiet import prepared_without, quietly
 from tests.support.running.processes import RunScript, on_ranks
 from tests.support.running.redrawn import redrawn
 
@@ -103,15 +104,12 @@ def test_error_bars_come_from_a_coarse_companion(out: Path, tmp_path: Path) -> N
     assert np.isfinite(column(rows(tmp_path / "harmonics.csv"), "amplitude_error")).all()
 
 
-def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path) -> None:
     """Tables as without, and a sentence with the reason."""
 
-    def refuse(*_: object) -> None:
-        raise MeshError("too coarse")
-
-    monkeypatch.setattr(excitation, "companion_mesh", refuse)
     loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS[:1])
-    (said,) = quietly(Excitation.under(loads), tmp_path)
+    prepare = prepared_without(companion_mesh, MeshError("too coarse"))
+    (said,) = quietly(Excitation.under(loads), tmp_path, prepare=prepare)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
     assert json.loads((tmp_path / "excitation.json").read_text(encoding="utf-8"))["warnings"] == [said]
     assert np.isnan(column(rows(tmp_path / "excitation.csv"), "secant_stiffness_N_per_um_error")).all()
@@ -120,7 +118,7 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
 def test_results_are_not_replaced_unasked(out: Path) -> None:
     """A second call is refused before anything is computed, and says what to do."""
     loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
-    with pytest.raises(FolderError, match="remedy: --resume goes on from its positions, --overwrite"):
+    with pytest.raises(FolderError, match="remedy: --resume goes on from them, --overwrite"):
         quietly(Excitation.under(loads), out)
 
 
@@ -143,14 +141,14 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(KeptPositions, "write", killed)
     with pytest.raises(Killed):
         quietly(Excitation.under(loads), tmp_path)
-    with pytest.raises(FolderError, match=r"found results/excitation\.npz of an earlier call"):
+    with pytest.raises(FolderError, match=r"found the results of an earlier call \(results/excitation\.npz\)"):
         quietly(Excitation.under(loads), tmp_path)
     assert quietly(Excitation.under(loads), tmp_path, resume=True) == []
     assert counts == [1, 2, 3, 4, 5, 6]
     for name in ("transmission_error_um", "tangent_stiffness_N_per_um"):
         whole, resumed = (column(rows(folder / "excitation.csv"), name) for folder in (out, tmp_path))
         assert resumed == pytest.approx(whole, rel=1e-8)
-    monkeypatch.setattr(excitation, "prepare_model", None)
+    monkeypatch.setattr(gear_model, "condensed_gears", None)
     assert quietly(Excitation.under(loads), tmp_path, resume=True) == []
     with pytest.raises(ArchiveError, match="found those of other gears, meshes, torques or positions"):
         quietly(Excitation.under(scene_torques(spur_scene(*SETTINGS), PERCENTS[:1])), tmp_path, resume=True)

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from evolvent.commands.app import main
-from evolvent.gears.gear_model import Preparation, prepare_model
-from evolvent.gears.meshing.root_meshes import RootMesh
-from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.gear_model import Preparation
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
 from evolvent.run.folder_checks import STUDY
 from evolvent.run.kinds.strength import Strength
+from evolvent.run.strength.pitch_roots import root_meshes
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
-from tests.support.quiet import quietly
+from tests.support.quiet import prepared_without, quietly
 from tests.support.running.processes import RunScript, on_ranks
 from tests.support.running.redrawn import redrawn
 
@@ -137,12 +134,8 @@ def test_a_short_gauge_finds_the_stress(tmp_path: Path) -> None:
 def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path) -> None:
     """Tables as without, and a sentence with the reason."""
 
-    def refuse(problem: GearProblem, comm: MPI.Comm, mesh: RootMesh, meshed: Callable[[], None]) -> Preparation:
-        if mesh.coarse:
-            raise MeshError("too coarse")
-        return prepare_model(problem, comm, mesh, meshed)
-
-    *_, said = quietly(Strength.of(scene()), tmp_path, prepare=refuse)
+    coarse = root_meshes(scene())[1].mesh
+    *_, said = quietly(Strength.of(scene()), tmp_path, prepare=prepared_without(coarse, MeshError("too coarse")))
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
 
 

@@ -47,7 +47,7 @@ def test_failures(task: SceneTask, monkeypatch: pytest.MonkeyPatch, error: Excep
     def fails(*_: object) -> list[str]:
         raise error
 
-    monkeypatch.setattr(scene_task, "COMPUTING", {"check": fails})
+    monkeypatch.setattr(scene_task, "run_check", fails)
     record = solve(task)
     assert record.status == "failed" and record.reason == str(error)
     assert (read_record(task.folder) == record) is kept

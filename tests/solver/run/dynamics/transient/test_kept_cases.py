@@ -10,6 +10,7 @@ import pytest
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arrays
+from evolvent.run import kept_pitch
 from evolvent.run.dynamics.transient import cases as module
 from evolvent.run.dynamics.transient.kept_cases import KeptCases, another
 from evolvent.run.kinds.transient import Transient
@@ -54,7 +55,12 @@ def scene(*settings: str) -> Scene:
 
 
 def kept(folder: Path) -> list[str]:
-    return sorted(path.name for path in (folder / "results").glob("*.npz"))
+    """Names of the stored cases."""
+    return sorted(path.name for path in (folder / "results").glob("transient_*.npz"))
+
+
+def unsolved(*_: object) -> None:
+    pytest.fail("statics solved again")
 
 
 @pytest.fixture(scope="module")
@@ -92,18 +98,18 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(module, "until_steady", counted)
     with pytest.raises(Killed):
         quietly(Transient.of(scene()), tmp_path)
-    assert kept(tmp_path) == ["transient_2000rpm_0.npz", "transient_static.npz"]
-    with pytest.raises(FolderError, match=r"found results/transient_static\.npz of an earlier call"):
+    assert kept(tmp_path) == ["transient_2000rpm_0.npz"]
+    with pytest.raises(FolderError, match=r"found the results of an earlier call \(results/state\.npz\)"):
         quietly(Transient.of(scene()), tmp_path)
     with pytest.raises(ArchiveError, match="found that of another one"):
         quietly(Transient.of(scene("transient.mesh_periods=50")), tmp_path, resume=True)
     with pytest.raises(Killed):
         quietly(Transient.of(scene()), tmp_path, resume=True)
     assert kept(tmp_path) == [
-        "transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_coarse_static.npz",
-        "transient_finer_2000rpm_0.npz", "transient_finer_2000rpm_1.npz", "transient_static.npz",
+        "transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_finer_2000rpm_0.npz",
+        "transient_finer_2000rpm_1.npz",
     ]
-    monkeypatch.setattr(module, "certified_pitch", None)
+    monkeypatch.setattr(kept_pitch, "sweep_until_periodic", unsolved)
     said = quietly(Transient.of(scene()), tmp_path, resume=True)
     assert len(counts) == 2 + 4 + 2
     assert same_tables(tmp_path, out)
@@ -113,11 +119,11 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_overwriting_begins_anew(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Statics and cases of an earlier call are gone before anything is computed."""
+    """Cases of an earlier call are gone before any other is computed."""
     earlier = KeptCases.of(scene(), scene().gear_pair(), tmp_path)
     earlier.write(1, KeptCases.of(scene(), earlier.pair, out).read()[1])
     assert kept(tmp_path) == ["transient_2000rpm_1.npz"]
-    monkeypatch.setattr(module, "certified_pitch", stopped)
+    monkeypatch.setattr(module, "resolved_modes", stopped)
     with pytest.raises(Killed):
         quietly(Transient.of(scene()), tmp_path, overwrite=True)
     assert kept(tmp_path) == []
@@ -127,7 +133,7 @@ def test_error_bars_that_are_asked_for_later(out: Path, tmp_path: Path, monkeypa
     """Of a call without them nothing is computed again but the companion; the tables are those of a call with them.
     """
     quietly(Transient.of(scene("output.error_bars=false")), tmp_path)
-    assert kept(tmp_path) == ["transient_2000rpm_0.npz", "transient_2000rpm_1.npz", "transient_static.npz"]
+    assert kept(tmp_path) == ["transient_2000rpm_0.npz", "transient_2000rpm_1.npz"]
     assert not same_tables(tmp_path, out)
     counts: list[int] = []
     solved = module.until_steady
@@ -168,7 +174,7 @@ def test_speeds_that_are_added_later(
         return solved(*given)
 
     monkeypatch.setattr(module, "until_steady", counted)
-    monkeypatch.setattr(module, "certified_pitch", None)
+    monkeypatch.setattr(kept_pitch, "sweep_until_periodic", unsolved)
     quietly(Transient.of(of(more)), grown, resume=True)
     assert len(counts) == 1 and str(*(set(more) - set(speeds))) in counts[0]
     assert same_tables(grown, whole)
@@ -216,7 +222,7 @@ def test_ranks_go_on(run_script: RunScript, tmp_path: Path, ranks: int) -> None:
     done = run_script("-c", WHOLE, *words, "--out", str(whole), ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
     assert run_script("-c", STOPPED, *words, "--out", str(cut), ranks=ranks).returncode != 0
-    assert kept(cut) == ["transient_2000rpm_0.npz", "transient_static.npz"]
+    assert kept(cut) == ["transient_2000rpm_0.npz"]
     before = (cut / "results/transient_2000rpm_0.npz").stat().st_mtime_ns
     done = run_script("-c", WHOLE, *words, "--out", str(cut), "--resume", ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]

@@ -13,14 +13,14 @@ import pytest
 from evidence.benchmarks.accuracy.transient_bars import FIGURES, HitRow, hit_rows
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.run.dynamics.transient import cases as module
-from evolvent.run.dynamics.transient import moving_companion
 from evolvent.run.dynamics.transient.summary_lines import summary_lines
 from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
-from tests.support.quiet import quietly
+from tests.support.quiet import prepared_without, quietly
 
 SETTINGS = (
     "transient.mesh_periods=200", "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
@@ -137,13 +137,10 @@ def test_a_companion_case_that_fails_is_said(tmp_path: Path, monkeypatch: pytest
     assert fact["dynamic_factor_error"] is None
 
 
-def test_a_companion_that_cannot_be_meshed_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_companion_that_cannot_be_meshed_is_said(tmp_path: Path) -> None:
     """No case has bars, with one sentence."""
 
-    def failing(*given: Any) -> None:
-        raise MeshError("wanted a mesh, found none")
-
-    monkeypatch.setattr(moving_companion, "companion_mesh", failing)
-    said = run(tmp_path, *FEW)
+    prepare = prepared_without(companion_mesh, MeshError("wanted a mesh, found none"))
+    said = quietly(Transient.of(load_scene(ROOT / "demos/he2022.toml", [*SETTINGS, *FEW])), tmp_path, prepare=prepare)
     assert "Error bars: their coarse companion could not be solved: wanted a mesh, found none" in said
     assert facts(tmp_path)[0]["max_pressure_MPa_error"] is None

@@ -26,10 +26,12 @@ from evolvent.commands.options import (
     Resume,
     SceneFile,
     results_folder,
+    torque_list,
 )
 from evolvent.commands.scene_argument import loaded_scene, require, require_room
 from evolvent.fem.parallel.mpi_start import world
 from evolvent.run.kinds.all import KINDS, Kind, kind_of
+from evolvent.scene.part_torque import listed_percents
 
 # commands import what they need beyond the scene: their help must not wait for PETSc or pyvista
 
@@ -47,7 +49,7 @@ def _command(kind: Kind) -> Command:
     def command(
         scene: SceneFile,
         out: ResultsFolder,
-        percents: Percents = (),
+        percents: Percents = None,
         level: LevelOption = None,
         settings: Overrides = None,
         exact: ExactParts = None,
@@ -63,7 +65,8 @@ def _command(kind: Kind) -> Command:
             if petsc is not None:
                 os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
             computation = kind_of(kind.name, loaded).load()
-            what = computation.of(loaded, percents) if kind.percents else computation.of(loaded)
+            listed = listed_percents(loaded, percents or (), kind.percents)
+            what = computation.of(loaded, listed) if kind.percents else computation.of(loaded)
             for each in what.sized:
                 require_room(each, what.command, force, world())
             from evolvent.run.call import Options
@@ -76,7 +79,8 @@ def _command(kind: Kind) -> Command:
                 if existing := [str(out / each) for each in what.files if (out / each).exists()]:
                     typer.echo("done: " + ", ".join(existing))
 
-    own = {"out": {"annotation": results_folder(kind.folder)}, "percents": {"default": kind.percents}}
+    shown = ",".join(f"{percent:g}" for percent in kind.percents)
+    own = {"out": {"annotation": results_folder(kind.folder)}, "percents": {"annotation": torque_list(shown)}}
     signature = inspect.signature(command, eval_str=True)
     parameters = [each.replace(**own.get(each.name, {})) for each in signature.parameters.values()
                   if each.name != "percents" or kind.percents]

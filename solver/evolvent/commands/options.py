@@ -12,8 +12,8 @@ from typing import Annotated, Any, cast
 import typer
 
 from evolvent import __version__
-from evolvent.scene.schema.dynamics import MOST_TORQUES
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
+from evolvent.scene.schema.loading import MOST_TORQUES
 from evolvent.scene.schema.output import SKIP_NAMES
 
 MOST_DIGITS, MOST_SHOWN = 9, 40
@@ -157,16 +157,22 @@ ExactParts = Annotated[
 ]
 
 
+def torque_list(default: str) -> Any:
+    """Option for the torques of a list. default: as the help shows it."""
+    words = "In percent of the scene's torque; by default load.percents of the scene."
+    return Annotated[
+        Any, typer.Option("--percent", metavar="LIST", help=words, parser=given_percents, show_default=default)
+    ]
+
+
 def results_folder(help_text: str) -> Any:
     """The type of --out of a command that computes into a folder."""
     return Annotated[Path, typer.Option("--out", metavar="DIR", help=help_text, parser=given_path)]
 
 
 ResultsFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Where results go.", parser=given_path)]
-Percents = Annotated[
-    Any, typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents)
-]
-"""Torques."""
+Percents = Any
+"""Torques of a list; its option is that of `torque_list`."""
 PetscOptions = Annotated[
     str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
 ]

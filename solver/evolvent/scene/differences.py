@@ -17,17 +17,20 @@ NOT_GIVEN = "not given"
 
 
 def essence(scene: Scene) -> Scene:
-    """The scene without the parts that its results do not depend on: title, output and the paths of flank charts."""
+    """The scene without the parts that its results do not depend on: title, output, the paths of flank charts, and the
+    other torques of a list."""
     exact = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in OF_OUTPUT))
+    load = scene.load.model_copy(update={"percents": ()})
     bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
-    return scene.model_copy(update={"title": "", "output": OutputSection(), "exact": exact, **bare})
+    return scene.model_copy(update={"title": "", "output": OutputSection(), "exact": exact, "load": load, **bare})
 
 
 def identity(scene: Scene) -> list[Any]:
     """All that the results of a scene depend on, as JSON has it: its values, those derived from them, and its flank
     charts. Keys have their first names, so that it is the same in all versions."""
     bare = essence(scene)
-    return [first_names(bare.model_dump(mode="json")), derived_values(bare), *charts(scene)]
+    values = bare.model_dump(mode="json", exclude={"load": {"percents"}})  # which first versions did not have
+    return [first_names(values), derived_values(bare), *charts(scene)]
 
 
 def charts(scene: Scene) -> list[str]:

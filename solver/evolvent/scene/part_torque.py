@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from evolvent.scene.scene import Scene, SceneError, scene_from_values
 from evolvent.scene.schema.errors import shown
+
+
+def listed_percents(
+    scene: Scene, given: Sequence[float] = (), default: Sequence[float] = (100.0,)
+) -> tuple[float, ...]:
+    """Torques of a list in percent of the scene's own: those given, those of the scene, or those by default."""
+    return tuple(given or scene.load.percents or default)
+
+
+def with_percents(scene: Scene, percents: Sequence[float]) -> Scene:
+    """The scene with torques of a list, in percent of its own."""
+    return scene.model_copy(update={"load": scene.load.model_copy(update={"percents": tuple(percents)})})
 
 
 def under_torque(scene: Scene, torque: float, mesh_torques: tuple[float, float] | None = None) -> Scene:

@@ -6,7 +6,7 @@ import pytest
 import typer
 
 from evolvent.commands.options import given_percents
-from evolvent.scene.schema.dynamics import MOST_TORQUES
+from evolvent.scene.schema.loading import MOST_TORQUES
 
 
 def test_a_list_of_torques_is_as_long_as_a_scenes() -> None:

@@ -14,6 +14,7 @@ from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.iso_dynamic_factor import method_b
 from evolvent.run.dynamics.speeds import map_list, sweep_list
 from evolvent.run.dynamics.vibration import accuracy
+from evolvent.run.kinds.excitation import Excitation
 from evolvent.run.kinds.strength import NO_DEEP_TEETH
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, scene_from_text
@@ -75,6 +76,7 @@ OTHERS = {
     "material.wheel.E_GPa": "200.0", "material.wheel.nu": "0.29", "mesh.level": '"fine"',
     "mesh.elements_per_contact_width": "2.5", "mesh.shape": '"tetrahedron"', "mesh.order": "1",
     "contact.friction": "0.1", "load.torque_Nm": "90.0", "load.on": '"wheel"', "load.mesh_torques_Nm": "[40.0, 160.0]",
+    "load.percents": "[50.0, 100.0]",
     "sweep.positions": "8", "wear.cycles": "2e6", "wear.pinion_mm2_per_N": "2e-10", "wear.wheel_mm2_per_N": "1e-10",
     "wear.report_at_cycles": "[1e5]", "wear.tolerance": "0.1", "wear.blocks": '"explicit"',
     "wear.first_block_cycles": "2e4", "wear.refresh_um": "3.0", "dynamics.speed_rpm": "[500.0, 9000.0]",
@@ -176,7 +178,12 @@ def _output(scene: Scene) -> object:
     return wanted_output(scene)
 
 
-CONSEQUENCES: tuple[Callable[[Scene], object], ...] = _gears, _output, _fatigue, _vibration, overview, _roots
+def _torques(scene: Scene) -> object:
+    """Torques of an excitation."""
+    return Excitation.of(scene).loads.torques
+
+
+CONSEQUENCES: tuple[Callable[[Scene], object], ...] = _gears, _output, _torques, _fatigue, _vibration, overview, _roots
 """What follows from a scene, the cheap ones first."""
 
 

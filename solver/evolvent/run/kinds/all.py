@@ -27,7 +27,7 @@ class Kind:
     """Command lines of the help."""
     folder: str = "Where tables and the picture go."
     """Help of --out."""
-    percents: str = ""
+    percents: tuple[float, ...] = ()
     """Default of --percent; empty: there is no such option."""
     in_studies: bool = True
     """Whether a study can compute it of each of its scenes."""
@@ -66,7 +66,7 @@ mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022 --resume""",
     """, """\
 evolvent loads demos/yang2022.toml --out out/loads --level quick
 mpirun -n 2 evolvent loads demos/yang2022.toml --out out/loads --percent 25,50,100,150""",
-        folder="For a folder of each load.", percents="5,10,25,50,75,100", in_studies=False,
+        folder="For a folder of each load.", percents=(5.0, 10.0, 25.0, 50.0, 75.0, 100.0), in_studies=False,
     ),
     Kind(
         "excitation", "excitation:Excitation", """Compute what a pair's mesh does to its vibration.
@@ -76,7 +76,7 @@ mpirun -n 2 evolvent loads demos/yang2022.toml --out out/loads --percent 25,50,1
     """, """\
 evolvent excitation demos/he2022.toml --out out/excitation --set sweep.positions=40
 mpirun -n 2 evolvent excitation demos/he2022.toml --out out/excitation --percent 10,50,100,200""",
-        percents="5,15,30,50,75,100,150,200",
+        percents=(5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0),
     ),
     Kind(
         "dynamics", "dynamics:Dynamics", """Compute the vibration of a pair over the speed.

@@ -14,6 +14,7 @@ from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.dynamics.excitation import EXCITATION_TABLES, SolvedExcitation, solved_excitation
 from evolvent.run.dynamics.kept_positions import KEPT
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
+from evolvent.scene.part_torque import listed_percents, with_percents
 from evolvent.scene.scene import Scene
 
 
@@ -30,9 +31,10 @@ class Excitation(Computation[SolvedExcitation]):
     )
 
     @classmethod
-    def of(cls, scene: Scene, percents: Sequence[float] = (100.0,)) -> Self:
+    def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
         """Excitation of a scene under parts of its torque. Raises SceneError where one of them is refused."""
-        return cls.under(scene_torques(scene, percents))
+        listed = listed_percents(scene, percents)
+        return cls.under(scene_torques(with_percents(scene, listed), listed))
 
     @classmethod
     def under(cls, loads: SceneTorques) -> Self:

@@ -16,7 +16,7 @@ from evolvent.run.compute import compute
 from evolvent.run.folder_checks import check_folder
 from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import under_torque
+from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
 from evolvent.scene.skips import with_deflected_flanks
@@ -34,17 +34,17 @@ class Loads(Computation[None]):
     is_list: ClassVar[bool] = True
 
     @classmethod
-    def of(cls, scene: Scene, percents: Sequence[float] = (100.0,)) -> Self:
+    def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
         """Runs of a scene under parts of its torque. percents: different ones. Raises SceneError where the gears wear,
         or where one of the torques is refused."""
         if scene.wear is not None:
             found, allowed = "a load list of gears that wear", "a scene without [wear]"
             raise SceneError([InputProblem("wear", found, allowed, "delete the section, or take `evolvent run`")])
-        torques = {percent: scene.load.torque_Nm * percent / 100.0 for percent in sorted(percents, reverse=True)}
+        listed, one = listed_percents(scene, percents), with_percents(scene, ())
+        torques = {percent: scene.load.torque_Nm * percent / 100.0 for percent in sorted(listed, reverse=True)}
         served = min(torques.values()), max(torques.values())
-        return cls(
-            scene, {_folder(percent): Run(under_torque(scene, torque, served)) for percent, torque in torques.items()}
-        )
+        runs = {_folder(percent): Run(under_torque(one, torque, served)) for percent, torque in torques.items()}
+        return cls(with_percents(scene, listed), runs)
 
     @property
     def sized(self) -> list[Scene]:

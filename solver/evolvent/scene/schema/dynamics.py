@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown, validation_error
+from evolvent.scene.schema.loading import MOST_TORQUES
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
 
 MOST_SPEEDS = 5000
-MOST_TORQUES = 30
-"""Largest number of torques of an excitation or a load list; each costs as much as a run of all positions."""
+"""Largest number of speeds of a sweep."""
 FASTEST = 1e6
 """Highest speed that a scene may have [r/min]."""
 SPEEDS = f"two rising numbers above 0 up to {FASTEST:g}, in r/min"

@@ -10,6 +10,9 @@ from evolvent.scene.schema.errors import InputProblem, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
 
 Coefficient = Annotated[float, Field(ge=0, le=1)]
+MOST_TORQUES = 30
+"""Largest number of torques of a load list or an excitation; each costs as much as a run of all positions."""
+PERCENTS = f"a list of up to {MOST_TORQUES} different numbers above 0 up to 1000"
 MOST_COEFFICIENTS = 50
 """Largest number of friction coefficients of a scene."""
 COEFFICIENTS = f"a number from 0 to 1, or a list of up to {MOST_COEFFICIENTS} different ones"
@@ -67,9 +70,23 @@ class LoadSection(SceneSection):
         default=None,
     )
 
-    @field_validator("mesh_torques_Nm", mode="before")
+    percents: tuple[Annotated[float, Field(gt=0, le=1000)], ...] = key(
+        "torques of `evolvent loads` and `excitation`, in percent of load.torque_Nm; --percent replaces them",
+        PERCENTS, "25, 50 and 100, for example; by default the command has a list of its own", default=(),
+        max_length=MOST_TORQUES,
+    )
+
+    @field_validator("percents")
     @classmethod
-    def _list_is_pair(cls, value: Any) -> Any:
+    def _different_percents(cls, values: tuple[float, ...]) -> tuple[float, ...]:
+        if twice := [value for value in values if values.count(value) > 1]:
+            found = f"{shown(twice[0])} more than once in {shown(values)}"
+            raise validation_error(InputProblem("", found, PERCENTS, "delete the repeated ones"))
+        return values
+
+    @field_validator("mesh_torques_Nm", "percents", mode="before")
+    @classmethod
+    def _list_is_tuple(cls, value: Any) -> Any:
         return tuple(value) if isinstance(value, list) else value
 
     @model_validator(mode="after")

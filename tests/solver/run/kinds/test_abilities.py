@@ -110,7 +110,7 @@ def test_interrupted_computation_solves_nothing_again(
 
 def test_folder_has_scene_log_and_cost(kind: Kind, whole: Path) -> None:
     """The scene that repeats it, its log to the end, and what it has cost under the name of its command."""
-    assert load_scene(whole / "scene.toml") == computation_of(kind).scene
+    assert kind.load().of(load_scene(whole / "scene.toml")) == computation_of(kind)
     assert "done in " in (whole / "run.log").read_text(encoding="utf-8")
     cost = json.loads((whole / "results/cost.json").read_text(encoding="utf-8"))
     assert cost["command"] == kind.command

@@ -19,7 +19,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from evolvent.run.context import peak_memory_MB
+from evolvent.run.call import peak_memory_MB
 from mpi4py import MPI
 
 from evidence.benchmarks.gears.three_teeth import FRICTION, pair_scene

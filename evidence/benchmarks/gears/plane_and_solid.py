@@ -17,7 +17,7 @@ from functools import cache
 from math import nan
 
 import numpy as np
-from evolvent.run.context import peak_memory_MB
+from evolvent.run.call import peak_memory_MB
 
 from evidence.scenes import spur_pair
 from evolvent.fem.backend import dolfinx_compat

@@ -20,7 +20,7 @@ COMMON = (str(LOG), *SCENE_FILES, str(COST))
 MARKS = {
     "loads.csv": "loads", "fatigue.csv": "fatigue", "strength.csv": "strength", "transient.csv": "transient",
     "results/transient_*.npz": "transient", "response.csv": "dynamics", "excitation.json": "excitation",
-    "results/excitation*.npz": "excitation",
+    "results/excitation*.npz": "excitation", "summary.json": "run", "results/state.npz": "run",
 }
 """Files of earlier versions, which did not write their command down, and the command that they tell of."""
 STUDY = "study.json"

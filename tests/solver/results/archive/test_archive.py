@@ -83,27 +83,28 @@ def test_finished_run_has_all_its_files(whole: Path) -> None:
     assert (whole / "run.log").read_text(encoding="utf-8").count("balance") == 5
 
 
-@pytest.mark.parametrize(
-    ("how", "ranks"),
-    [
-        ("kill-mesh", 1),
-        ("kill-before-1", 1),
-        ("kill-half-4", 1),
-        pytest.param("kill-before-8", 2, marks=pytest.mark.mpi),
-        ("kill-before-11", 1),
-    ],
-)
-def test_killed_run_resumes_to_the_same_results(
-    how: str, ranks: int, whole: Path, run_script: Run, tmp_path: Path
-) -> None:
-    """kill -9 while meshing, between a position and its state, amid writing, at the position that closes the pitch:
-    resumed it is the undisturbed run. One is resumed on two ranks."""
+@pytest.mark.mpi
+def test_killed_run_resumes_to_the_same_results(whole: Path, run_script: Run, tmp_path: Path) -> None:
+    """kill -9 while meshing, before the gears are kept, amid writing a position, between a position and its state, and
+    on two ranks at the position that closes the pitch: resumed after each, the run is the undisturbed one."""
     out = tmp_path / "out"
-    assert run_script(BROKEN_RUN, how, *arguments(out)).returncode == -9
-    assert not (out / "summary.json").exists()
-    done = run_script(BROKEN_RUN, "ok", *arguments(out, "--resume"), ranks=ranks)
+    struck = ("kill-mesh", 1, 0), ("kill-before-1", 1, 0), ("kill-half-4", 1, 1), ("kill-before-4", 1, 2), (
+        "kill-before-3", 2, 3
+    )
+    for number, (how, ranks, complete) in enumerate(struck):
+        done = run_script(BROKEN_RUN, how, *arguments(out, *["--resume"] * (number > 0)), ranks=ranks)
+        assert done.returncode == (-9 if ranks == 1 else 137), done.stderr
+        assert not (out / "summary.json").exists()
+        assert kept_positions(out) == complete
+    done = run_script(BROKEN_RUN, "ok", *arguments(out, "--resume"))
     assert done.returncode == 0, done.stderr
     assert_same(out, whole)
+
+
+def kept_positions(out: Path) -> int:
+    """Positions from which a run is resumed."""
+    state = out / "results/state.npz"
+    return int(read_arrays(state)["complete"]) if state.exists() else 0
 
 
 def test_archived_friction_history_continues_the_sweep(tmp_path: Path) -> None:

@@ -36,6 +36,8 @@ SLOW = (
 )
 """Three scenes in plane strain, a second or two each, on the same gears."""
 CODE = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
+BRIEF = f"from evolvent.run.study import scheduled_workers; scheduled_workers.PATIENCE = 2.0; {CODE}"
+"""The same, which waits for two seconds instead of ten for a scheduler that does not answer or has no workers."""
 
 
 @pytest.mark.slow
@@ -93,7 +95,7 @@ def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: Run) -> None
     study = written(tmp_path, TORQUES)
     arguments = ["study", str(study), "--out", str(tmp_path / "out"), "--scheduler"]
     with scheduler(tmp_path) as address:
-        done = run_script("-c", CODE, *arguments, address)
+        done = run_script("-c", BRIEF, *arguments, address)
         assert done.returncode == 2
         assert "without workers; allowed: one with workers; remedy: start some with `python -m dask" in done.stderr
         with worker(address, tmp_path, threads=2):
@@ -180,7 +182,7 @@ def test_commands_of_the_page(tmp_path: Path) -> None:
 def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...], said: str) -> None:
     """Status 2, one line, nothing computed, and no folder left."""
     study, out = written(tmp_path, TORQUES), tmp_path / "out"
-    done = run_script("-c", CODE, "study", str(study), "--out", str(out), "--quiet", *options)
+    done = run_script("-c", BRIEF, "study", str(study), "--out", str(out), "--quiet", *options)
     assert done.returncode == 2
     assert done.stderr.startswith("evolvent: ") and said in done.stderr and "Traceback" not in done.stderr
     assert not out.exists()

@@ -31,7 +31,7 @@ def bodies(kind: str) -> tuple[GearBody, ...]:
     scenes = {
         "spur": lambda: spur_scene("mesh.level=quick"),
         "spur of order 1": lambda: spur_scene("mesh.level=quick", "mesh.order=1"),
-        "helical": lambda: helical_scene("mesh.order=1"),
+        "helical": lambda: helical_scene("mesh.order=1", "pinion.face_width_mm=4", "wheel.face_width_mm=4"),
     }
     return prepare_model(gear_problem(scenes[kind]()), MPI.COMM_SELF).model.bodies
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -60,8 +61,13 @@ def helical_scene(*settings: str) -> Scene:
 
 
 def model_of(scene: Scene) -> GearModel:
-    """Condensed on this rank alone."""
-    return prepare_model(gear_problem(scene), MPI.COMM_SELF).model
+    """Condensed on this rank alone; the same object for the last few scenes, which many tests share."""
+    return _condensed(scene.resolved_toml())
+
+
+@lru_cache(maxsize=6)
+def _condensed(text: str) -> GearModel:
+    return prepare_model(gear_problem(scene_from_text(text)), MPI.COMM_SELF).model
 
 
 def few_cells(problem: GearProblem, member: Member) -> LevelledMesh:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -9,10 +11,11 @@ from mpi4py import MPI
 
 from evolvent.fem.body import assemble
 from evolvent.gears.condensed_gear import GearBody, condensed_gear, sector_body
-from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.gear_model import GearModel, Mesher, prepare_model
 from evolvent.gears.kinematics import turn
-from evolvent.gears.meshing import levelled_meshes
-from evolvent.gears.meshing.root_meshes import RootMesh, root_nodes
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh
+from evolvent.gears.meshing.root_meshes import RootMesh, root_nodes, with_back_root
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import NodalForces, nodal_forces
@@ -23,14 +26,20 @@ from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
-from tests.support.gear_cases import helical_scene, spur_scene
+from tests.support.gear_cases import few_cells, helical_scene, spur_scene
 
 POSITIONS = 2
 
 
-def loaded(scene: Scene) -> tuple[GearModel, list[NodalForces]]:
+def few_cells_with_roots(problem: GearProblem, member: Member) -> LevelledMesh:
+    """Few cells on a flank with a level, and the nodes of both roots."""
+    levelled = few_cells(problem, member)
+    return replace(levelled, mesh=with_back_root(levelled.mesh))
+
+
+def loaded(scene: Scene, mesh: Mesher = RootMesh()) -> tuple[GearModel, list[NodalForces]]:  # noqa: B008  frozen
     """Gears with the nodes of their roots, and the forces on each at two positions with friction."""
-    model = prepare_model(gear_problem(scene), MPI.COMM_SELF, RootMesh()).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF, mesh).model
     positions = sweep_pitch(model, uniform_pitch(scene.pinion.teeth, POSITIONS), [0.1], initial_state([0.1]))
     results = [position.results[0] for position in positions]
     return model, [nodal_forces(results, body.member) for body in model.bodies]
@@ -57,12 +66,10 @@ def test_roots_move_as_the_whole_sector(kind: str, member: Member) -> None:
     check_roots(model.bodies[member], loads[member])
 
 
-@pytest.mark.slow
-def test_roots_below_flanks_with_levels(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_roots_below_flanks_with_levels() -> None:
     """Exact: forces act on the sector through its coarse flank, in the field and at the roots."""
-    monkeypatch.setattr(levelled_meshes, "MOST_DOFS", 0)
     narrow = "mesh.order=2", "pinion.face_width_mm=4", "wheel.face_width_mm=4"
-    model, loads = loaded(helical_scene(*narrow, "contact.friction=0.1"))
+    model, loads = loaded(helical_scene(*narrow, "contact.friction=0.1"), few_cells_with_roots)
     for body, own in zip(model.bodies, loads):
         assert isinstance(body.chain, TwoLevelRing)
         check_roots(body, own)

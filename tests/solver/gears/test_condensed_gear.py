@@ -6,13 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from mpi4py import MPI
 
-from evolvent.fem.body import assemble
-from evolvent.gears.condensed_gear import GearBody, condensed_gear, sector_body
+from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.gear_model import GearModel, Mesher, prepare_model
-from evolvent.gears.kinematics import turn
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh
 from evolvent.gears.meshing.root_meshes import RootMesh, root_nodes, with_back_root
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -23,10 +20,10 @@ from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.fields.deformation import GearField
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from tests.support.gear_cases import few_cells, helical_scene, spur_scene
+from tests.support.gear_reactions import reaction_imbalance
 
 POSITIONS = 2
 
@@ -95,21 +92,4 @@ def test_reactions_of_all_sectors_balance_the_forces(member: Member) -> None:
     body = condensed_gear(
         gear, mesh, problem.materials[member], range(gear.z), member, carries_pressure=member is Member.PINION
     )
-    random, nodes = np.random.default_rng(3), np.arange(len(body.flank.points))
-    rows = np.concatenate([np.column_stack([np.full(len(nodes), n), nodes]) for n in sorted([0, member.sign])])
-    loads = NodalForces(rows, random.normal(size=(1, len(rows), 2)))
-    field, held = GearField(body, loads), np.unique(mesh.facets["bore"])
-    K, total = sp.csr_matrix(assemble(sector_body(mesh, body.material, member)).stiffness), np.zeros(3)
-    for number in (member.sign * tooth for tooth in range(gear.z)):
-        R = turn(number * 2.0 * np.pi / gear.z, 2)
-        reaction = (K @ field.displacement(0, number).ravel()).reshape(-1, 2)[held]
-        total += resultant(mesh.points[held, :2] @ R.T, reaction @ R.T)
-    places = np.array([turn(number * 2.0 * np.pi / gear.z, 2) @ body.flank.points[node] for number, node in rows])
-    error = np.abs(total + resultant(places, loads.forces[0]))
-    assert (error < 1e-6 * np.abs(loads.forces).sum() * np.array([1.0, 1.0, gear.tip_diameter])).all()
-
-
-def resultant(places: Floats, forces: Floats) -> Floats:
-    """Force (x, y) and moment about the axis."""
-    moment = np.sum(places[:, 0] * forces[:, 1] - places[:, 1] * forces[:, 0])
-    return np.array([*forces.sum(axis=0), moment])
+    assert (reaction_imbalance(body) < 1e-6).all()

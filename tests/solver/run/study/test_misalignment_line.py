@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
+from evidence.tables import read_csv
 from evolvent.dynamics.excitation import misaligned_mesh
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.misaligned_position import misaligned_on
@@ -42,8 +42,8 @@ def tasks(folder: Path, text: str = LINE, compute: Computation = "excitation") -
 
 def values(task: SceneTask, column: str) -> dict[tuple[str, str], float]:
     """A column of a scene's harmonics.csv, by quantity and harmonic."""
-    with open(task.folder / "harmonics.csv", encoding="utf-8") as stream:
-        return {(row["quantity"], row["harmonic"]): float(row[column]) for row in csv.DictReader(stream)}
+    rows = read_csv(task.folder / "harmonics.csv")
+    return {(row["quantity"], row["harmonic"]): float(row[column]) for row in rows}
 
 
 @dataclass(frozen=True)

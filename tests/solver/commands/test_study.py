@@ -26,6 +26,8 @@ from evidence.robustness.study_programs import (
     worker,
     workers_of,
 )
+from evolvent.commands.app import main
+from evolvent.run.study import scheduled_workers
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run
 from tests.support.running.study_cases import TORQUES, table, written
@@ -181,21 +183,25 @@ def test_commands_of_the_page(tmp_path: Path) -> None:
     ],
     ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
 )
-def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...], said: str) -> None:
+def test_wrong_options(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...],
+    said: str,
+) -> None:
     """Status 2, one line, nothing computed, and no folder left."""
+    monkeypatch.setattr(scheduled_workers, "PATIENCE", 2.0)
     study, out = written(tmp_path, TORQUES), tmp_path / "out"
-    done = run_script("-c", BRIEF, "study", str(study), "--out", str(out), "--quiet", *options)
-    assert done.returncode == 2
-    assert done.stderr.startswith("evolvent: ") and said in done.stderr and "Traceback" not in done.stderr
+    assert main(["study", str(study), "--out", str(out), "--quiet", *options]) == 2
+    errors = capfd.readouterr().err
+    assert errors.startswith("evolvent: ") and said in errors and "Traceback" not in errors
     assert not out.exists()
 
 
-def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, run_script: Run) -> None:
+def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Refused; nothing is made where it leads."""
     (tmp_path / "out").symlink_to(tmp_path / "nowhere")
     study = written(tmp_path, TORQUES)
-    done = run_script("-m", "evolvent", "study", str(study), "--out", str(tmp_path / "out"), "--quiet")
-    assert done.returncode == 2 and "a link that leads nowhere" in done.stderr
+    assert main(["study", str(study), "--out", str(tmp_path / "out"), "--quiet"]) == 2
+    assert "a link that leads nowhere" in capfd.readouterr().err
     assert not (tmp_path / "nowhere").exists()
 
 

@@ -22,7 +22,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
-from tests.support.gear_cases import few_cells, helical_scene, spur_scene
+from tests.support.gear_cases import few_cells, helical_scene, model_of, spur_scene
 from tests.support.gear_reactions import reaction_imbalance
 
 POSITIONS = 2
@@ -74,7 +74,7 @@ def test_roots_below_flanks_with_levels() -> None:
 
 def test_meshes_of_a_run_observe_nothing() -> None:
     """Only meshes with a `BACK_ROOT` have root nodes; without, displacements there are refused."""
-    model = prepare_model(gear_problem(spur_scene("mesh.level=quick")), MPI.COMM_SELF).model
+    model = model_of(spur_scene("mesh.level=quick"))
     chain = model.bodies[0].chain
     assert len(root_nodes(model.bodies[0].mesh)) == 0
     assert isinstance(chain, ChainedCompliance)

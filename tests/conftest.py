@@ -34,9 +34,9 @@ def run_script() -> processes.RunScript:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Where workers share the tests."""
     if hasattr(config, "workerinput"):
-        from tests.support.running.schedule import longest_files_first
+        from tests.support.running.schedule import durations, longest_files_first
 
-        longest_files_first(items)
+        longest_files_first(items, config.rootpath, durations())
 
 
 @pytest.hookimpl(optionalhook=True)

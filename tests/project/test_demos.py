@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Callable
 from functools import cache
@@ -10,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from evidence.tables import read_csv
 from tests.support.running.processes import Done, RunScript, on_ranks
 
 DEMOS = ("two_blocks", "hertz_cylinder", "transmission_error", "hertz_sphere")
@@ -59,8 +59,7 @@ def test_ball_profile_on_squares(alone: Alone) -> None:
     less than 4 %, and by less than half of what the symmetric one's is (16 %)."""
     done, out = alone("hertz_sphere")
     assert done.returncode == 0, done.stderr[-3000:]
-    with open(out / "table.csv", encoding="utf-8") as file:
-        error = {row["mesh"]: float(row["profile error [%]"] or 0.0) for row in csv.DictReader(file)}
+    error = {row["mesh"]: float(row["profile error [%]"] or 0.0) for row in read_csv(out / "table.csv")}
     assert error["squares, a/2, skew"] < min(4.0, 0.5 * error["squares, a/2"])
 
 
@@ -109,8 +108,7 @@ def test_gear_dynamics_demo(run_script: RunScript, tmp_path: Path) -> None:
     done = run_script("demos/he2022_dynamics.py", "--quick", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr[-3000:]
     assert (tmp_path / "he2022_dynamics.png").stat().st_size > 20_000
-    with open(tmp_path / "table.csv", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_csv(tmp_path / "table.csv")
     assert len(rows) == 2
     for row in rows:
         assert float(row["jump_down_rpm"]) < float(row["jump_up_rpm"]) < float(row["natural_speed_rpm"])
@@ -125,8 +123,7 @@ def test_root_stress_demo(run_script: RunScript, tmp_path: Path) -> None:
     done = run_script("demos/zhang2023.py", "--quick", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr[-3000:]
     assert (tmp_path / "zhang2023.png").stat().st_size > 20_000
-    with open(tmp_path / "table.csv", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_csv(tmp_path / "table.csv")
     assert len(rows) == 8
     paper = {"pinion": 490.6, "wheel": 487.01}
     for less, more in zip(rows[:4], rows[4:]):

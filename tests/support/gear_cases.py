@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 from mpi4py import MPI
 
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.meshing.flank_levels import FlankLevel, LevelledSector
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh, levelled_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import shared_position
@@ -18,6 +22,7 @@ from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.member import Member
 from tests.support.checkout import ROOT
 
+LEVEL = FlankLevel(2, 2, (2, 1, 1))
 QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false", "output.error_bars=false")
 HELICAL = """
 [pair]
@@ -56,8 +61,22 @@ def helical_scene(*settings: str) -> Scene:
 
 
 def model_of(scene: Scene) -> GearModel:
-    """Condensed on this rank alone."""
-    return prepare_model(gear_problem(scene), MPI.COMM_SELF).model
+    """Condensed on this rank alone; the same object for the last few scenes, which many tests share."""
+    return _condensed(scene.resolved_toml())
+
+
+@lru_cache(maxsize=6)
+def _condensed(text: str) -> GearModel:
+    return prepare_model(gear_problem(scene_from_text(text)), MPI.COMM_SELF).model
+
+
+def few_cells(problem: GearProblem, member: Member) -> LevelledMesh:
+    """A sector whose flank has 6 × 2 coarse cells, each divided into 2 × 2 on its one level."""
+
+    def adapted(sector: LevelledSector) -> LevelledSector:
+        return LevelledSector(replace(sector.coarse, profile_elements=6, face_elements=2), (LEVEL,))
+
+    return levelled_mesh(problem, member, adapted)
 
 
 @dataclass(frozen=True)

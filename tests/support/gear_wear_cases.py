@@ -43,7 +43,7 @@ def condenser(scene: Scene) -> Callable[[Callable[[Member], MeshData]], GearMode
 
 def wearing_gears(scene: Scene, positions: int = 4, refresh: float = np.inf) -> GearWear:
     """Both gears wear alike."""
-    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
+    model = model_of(scene)
     pitch, following = uniform_pitch(model.pair.pinion.z, positions), GearMeshMotion(refresh, condenser(scene))
     return GearWear(model, pitch, 0.0, Archard(K, K), MPI.COMM_SELF, following)
 

@@ -9,6 +9,7 @@ import pytest
 from evidence.robustness.study_kills import differing, killed_at_random, measured
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_kills_at_random_moments(tmp_path: Path) -> None:
     """Three kills of the study, of workers, or of workers that start: the study that is begun again ends, no

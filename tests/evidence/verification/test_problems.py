@@ -21,7 +21,7 @@ from evidence.verification.transient import thousand_impacts
 from evolvent.results.drawing.style import sheet
 from tests.support.running.samples import sampled
 
-QUICK = "patch", "partial_slip", "sharing", "pressed_block"
+QUICK = "patch", "partial_slip", "sharing", "bar_on_wall"
 """One problem of each kind: contact, friction, gears, motion."""
 
 

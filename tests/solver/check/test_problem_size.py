@@ -292,8 +292,7 @@ def test_check_takes_little_memory() -> None:
 @pytest.mark.mpi
 def test_two_ranks_refuse_with_one_message(run_script: RunScript) -> None:
     """Under mpirun the memory of all ranks on a machine counts; one message, status 2 on all."""
-    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
     arguments = "run", "demos/yang2022.toml", "--out", "/nowhere/out", "--set", "load.torque_Nm=1e-4"
-    done = run_script("-c", code, *arguments, ranks=2)
+    done = run_script("-m", "evolvent", *arguments, ranks=2)
     assert done.returncode == 2 and done.stderr.count("mesh.level: found") == 1
     assert "on 2 ranks" in done.stderr and "Traceback" not in done.stderr

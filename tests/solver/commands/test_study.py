@@ -26,6 +26,8 @@ from evidence.robustness.study_programs import (
     worker,
     workers_of,
 )
+from evolvent.commands.app import main
+from evolvent.run.study import scheduled_workers
 from tests.support.checkout import ROOT
 from tests.support.running.processes import RunScript
 from tests.support.running.study_cases import TORQUES, table, written
@@ -35,7 +37,11 @@ SLOW = (
     + '[set]\npinion.face_width_mm = 25.0\nmesh.level = "quick"\nsweep.positions = 4\noutput.error_bars = false\n'
 )
 """Three scenes in plane strain, a second or two each, on the same gears."""
-CODE = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
+BRIEF = (
+    "import sys; from evolvent.commands.app import main; from evolvent.run.study import scheduled_workers; "
+    "scheduled_workers.PATIENCE = 2.0; sys.exit(main(sys.argv[1:]))"
+)
+"""`evolvent` that waits for two seconds instead of ten for a scheduler that does not answer or has no workers."""
 
 
 @pytest.mark.slow
@@ -93,11 +99,11 @@ def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: RunScript) -
     study = written(tmp_path, TORQUES)
     arguments = ["study", str(study), "--out", str(tmp_path / "out"), "--scheduler"]
     with scheduler(tmp_path) as address:
-        done = run_script("-c", CODE, *arguments, address)
+        done = run_script("-c", BRIEF, *arguments, address)
         assert done.returncode == 2
         assert "without workers; allowed: one with workers; remedy: start some with `python -m dask" in done.stderr
         with worker(address, tmp_path, threads=2):
-            done = run_script("-c", CODE, *arguments, address)
+            done = run_script("-m", "evolvent", *arguments, address)
     assert done.returncode == 2 and "with 2 threads; allowed: one thread a worker" in done.stderr
     assert not (tmp_path / "out/study.csv").exists()
 
@@ -121,12 +127,12 @@ def test_a_scheduler_with_certificates(tmp_path: Path, monkeypatch: pytest.Monke
             configured.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{role}__KEY", str(key))
         with scheduler(tmp_path, "--protocol", "tls") as address, worker(address, tmp_path):
             assert address.startswith("tls://")
-            done = run_script("-c", CODE, *arguments, address)
+            done = run_script("-m", "evolvent", *arguments, address)
             assert done.returncode == 0, done.stderr
             with monkeypatch.context() as stranger:
                 for name in [name for name in os.environ if name.startswith("DASK_")]:
                     stranger.delenv(name)
-                refused = run_script("-c", CODE, *arguments[:-2], str(tmp_path / "other"), "--scheduler", address)
+                refused = run_script("-m", "evolvent", *arguments[:-2], str(tmp_path / "other"), "--scheduler", address)
     assert {row["status"] for row in table(out)} == {"done"}
     assert refused.returncode == 2 and "which cannot be reached (TLS expects" in refused.stderr
     assert not (tmp_path / "other").exists()
@@ -177,28 +183,32 @@ def test_commands_of_the_page(tmp_path: Path) -> None:
     ],
     ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
 )
-def test_wrong_options(tmp_path: Path, run_script: RunScript, options: tuple[str, ...], said: str) -> None:
+def test_wrong_options(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...],
+    said: str,
+) -> None:
     """Status 2, one line, nothing computed, and no folder left."""
+    monkeypatch.setattr(scheduled_workers, "PATIENCE", 2.0)
     study, out = written(tmp_path, TORQUES), tmp_path / "out"
-    done = run_script("-c", CODE, "study", str(study), "--out", str(out), "--quiet", *options)
-    assert done.returncode == 2
-    assert done.stderr.startswith("evolvent: ") and said in done.stderr and "Traceback" not in done.stderr
+    assert main(["study", str(study), "--out", str(out), "--quiet", *options]) == 2
+    errors = capfd.readouterr().err
+    assert errors.startswith("evolvent: ") and said in errors and "Traceback" not in errors
     assert not out.exists()
 
 
-def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, run_script: RunScript) -> None:
+def test_a_folder_that_is_a_link_to_nowhere(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Refused; nothing is made where it leads."""
     (tmp_path / "out").symlink_to(tmp_path / "nowhere")
     study = written(tmp_path, TORQUES)
-    done = run_script("-c", CODE, "study", str(study), "--out", str(tmp_path / "out"), "--quiet")
-    assert done.returncode == 2 and "a link that leads nowhere" in done.stderr
+    assert main(["study", str(study), "--out", str(tmp_path / "out"), "--quiet"]) == 2
+    assert "a link that leads nowhere" in capfd.readouterr().err
     assert not (tmp_path / "nowhere").exists()
 
 
 def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: RunScript) -> None:
     """--level as of the other commands."""
     study, out = written(tmp_path, TORQUES.replace("[100.0, 200.0, 300.0]", "[100.0]")), tmp_path / "out"
-    done = run_script("-c", CODE, "study", str(study), "--out", str(out), "--quiet", "--level", "quick")
+    done = run_script("-m", "evolvent", "study", str(study), "--out", str(out), "--quiet", "--level", "quick")
     assert done.returncode == 0, done.stderr
     assert "quick" in next(out.glob("scenes/*/check.txt")).read_text(encoding="utf-8")
 
@@ -207,5 +217,5 @@ def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: RunScript) -> N
 def test_mpirun_is_refused(tmp_path: Path, run_script: RunScript) -> None:
     """Two ranks: status 2, and what to do instead."""
     study = written(tmp_path, TORQUES)
-    done = run_script("-c", CODE, "study", str(study), "--out", str(tmp_path / "out"), ranks=2)
+    done = run_script("-m", "evolvent", "study", str(study), "--out", str(tmp_path / "out"), ranks=2)
     assert done.returncode == 2 and "leave out mpirun, give --workers" in done.stderr

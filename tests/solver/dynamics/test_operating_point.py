@@ -138,9 +138,8 @@ def test_stresses_of_several_meshes_are_those_of_the_largest_force() -> None:
     twice = replace(
         POINT, settings=replace(POINT.settings, damping_ratio=0.003), speed=2.0 * operation(4000.0).drive.natural_speed
     )
-    mean, largest = (
-        replace(twice, of_several=way).on(model(), (None, None), MPI.COMM_SELF) for way in ("mean", "largest")
-    )
+    mean = twice.on(model(), (None, None), MPI.COMM_SELF)
+    largest = replace(twice, of_several="largest").on(model(), (None, None), MPI.COMM_SELF, mean.start)
     assert mean.repeats == largest.repeats == 2
     wear, stress = mean.load.course, largest.load.course
     assert wear is not None and stress is not None

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from mpi4py import MPI
 
-from evolvent.fem.body import assemble
-from evolvent.gears.condensed_gear import GearBody, condensed_gear, sector_body
-from evolvent.gears.gear_model import GearModel, prepare_model
-from evolvent.gears.kinematics import turn
-from evolvent.gears.meshing import levelled_meshes
-from evolvent.gears.meshing.root_meshes import RootMesh, root_nodes
+from evolvent.gears.condensed_gear import GearBody, condensed_gear
+from evolvent.gears.gear_model import GearModel, Mesher, prepare_model
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh
+from evolvent.gears.meshing.root_meshes import RootMesh, root_nodes, with_back_root
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import NodalForces, nodal_forces
@@ -20,17 +20,23 @@ from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.fields.deformation import GearField
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
-from tests.support.gear_cases import helical_scene, spur_scene
+from tests.support.gear_cases import few_cells, helical_scene, model_of, spur_scene
+from tests.support.gear_reactions import reaction_imbalance
 
 POSITIONS = 2
 
 
-def loaded(scene: Scene) -> tuple[GearModel, list[NodalForces]]:
+def few_cells_with_roots(problem: GearProblem, member: Member) -> LevelledMesh:
+    """Few cells on a flank with a level, and the nodes of both roots."""
+    levelled = few_cells(problem, member)
+    return replace(levelled, mesh=with_back_root(levelled.mesh))
+
+
+def loaded(scene: Scene, mesh: Mesher = RootMesh()) -> tuple[GearModel, list[NodalForces]]:  # noqa: B008  frozen
     """Gears with the nodes of their roots, and the forces on each at two positions with friction."""
-    model = prepare_model(gear_problem(scene), MPI.COMM_SELF, RootMesh()).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF, mesh).model
     positions = sweep_pitch(model, uniform_pitch(scene.pinion.teeth, POSITIONS), [0.1], initial_state([0.1]))
     results = [position.results[0] for position in positions]
     return model, [nodal_forces(results, body.member) for body in model.bodies]
@@ -57,12 +63,10 @@ def test_roots_move_as_the_whole_sector(kind: str, member: Member) -> None:
     check_roots(model.bodies[member], loads[member])
 
 
-@pytest.mark.slow
-def test_roots_below_flanks_with_levels(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_roots_below_flanks_with_levels() -> None:
     """Exact: forces act on the sector through its coarse flank, in the field and at the roots."""
-    monkeypatch.setattr(levelled_meshes, "MOST_DOFS", 0)
     narrow = "mesh.order=2", "pinion.face_width_mm=4", "wheel.face_width_mm=4"
-    model, loads = loaded(helical_scene(*narrow, "contact.friction=0.1"))
+    model, loads = loaded(helical_scene(*narrow, "contact.friction=0.1"), few_cells_with_roots)
     for body, own in zip(model.bodies, loads):
         assert isinstance(body.chain, TwoLevelRing)
         check_roots(body, own)
@@ -70,7 +74,7 @@ def test_roots_below_flanks_with_levels(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_meshes_of_a_run_observe_nothing() -> None:
     """Only meshes with a `BACK_ROOT` have root nodes; without, displacements there are refused."""
-    model = prepare_model(gear_problem(spur_scene("mesh.level=quick")), MPI.COMM_SELF).model
+    model = model_of(spur_scene("mesh.level=quick"))
     chain = model.bodies[0].chain
     assert len(root_nodes(model.bodies[0].mesh)) == 0
     assert isinstance(chain, ChainedCompliance)
@@ -88,21 +92,4 @@ def test_reactions_of_all_sectors_balance_the_forces(member: Member) -> None:
     body = condensed_gear(
         gear, mesh, problem.materials[member], range(gear.z), member, carries_pressure=member is Member.PINION
     )
-    random, nodes = np.random.default_rng(3), np.arange(len(body.flank.points))
-    rows = np.concatenate([np.column_stack([np.full(len(nodes), n), nodes]) for n in sorted([0, member.sign])])
-    loads = NodalForces(rows, random.normal(size=(1, len(rows), 2)))
-    field, held = GearField(body, loads), np.unique(mesh.facets["bore"])
-    K, total = sp.csr_matrix(assemble(sector_body(mesh, body.material, member)).stiffness), np.zeros(3)
-    for number in (member.sign * tooth for tooth in range(gear.z)):
-        R = turn(number * 2.0 * np.pi / gear.z, 2)
-        reaction = (K @ field.displacement(0, number).ravel()).reshape(-1, 2)[held]
-        total += resultant(mesh.points[held, :2] @ R.T, reaction @ R.T)
-    places = np.array([turn(number * 2.0 * np.pi / gear.z, 2) @ body.flank.points[node] for number, node in rows])
-    error = np.abs(total + resultant(places, loads.forces[0]))
-    assert (error < 1e-6 * np.abs(loads.forces).sum() * np.array([1.0, 1.0, gear.tip_diameter])).all()
-
-
-def resultant(places: Floats, forces: Floats) -> Floats:
-    """Force (x, y) and moment about the axis."""
-    moment = np.sum(places[:, 0] * forces[:, 1] - places[:, 1] * forces[:, 0])
-    return np.array([*forces.sum(axis=0), moment])
+    assert (reaction_imbalance(body) < 1e-6).all()

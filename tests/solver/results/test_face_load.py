@@ -21,7 +21,7 @@ from evolvent_meshes.arrays import Floats
 from tests.support.gear_cases import QUIET
 from tests.support.synthetic_run import resolved_slices, synthetic_run
 
-COARSE = ("mesh.elements_per_contact_width=0.6", "sweep.positions=3", "contact.friction=0.0", *QUIET)
+COARSE = ("mesh.elements_per_contact_width=0.6", "mesh.order=1", "sweep.positions=3", "contact.friction=0.0", *QUIET)
 
 Load = Callable[[Floats, int], Floats]
 """Normal force per face width (n,) [N/mm] at heights (n,) [mm], at a position."""

@@ -83,14 +83,14 @@ def solved(scene: Scene, out: Path) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def solved_case(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, bool], tuple[dict[str, Any], Path]]:
-    """Summary and folder of a case of ANSWERS, with its skip or without; each is solved once."""
+    """Summary and folder of a case of ANSWERS, with its skip or without; each scene is solved once."""
 
     @cache
-    def solved_once(name: str, off: bool) -> tuple[dict[str, Any], Path]:
+    def solved_once(text: str) -> tuple[dict[str, Any], Path]:
         out = tmp_path_factory.mktemp("case") / "out"
-        return solved(ANSWERS[name].scene(off), out), out
+        return solved(scene_from_text(text), out), out
 
-    return solved_once
+    return lambda name, off: solved_once(ANSWERS[name].scene(off).resolved_toml())
 
 
 @pytest.mark.parametrize("name", ANSWERS)

@@ -15,6 +15,7 @@ from evolvent.wear.sliding_track import track_of
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import box
 from evolvent_meshes.shapes.rings import ring_sphere
+from tests.support.running.samples import sampled
 from tests.support.wear_cases import LINE_LOAD, RADIUS, K, cylinder
 
 SOFT, STIFF = Material(2.1e4, 0.3), Material(2.1e5, 0.3)
@@ -23,6 +24,12 @@ WHEEL = Cycle(travel=(Travel(0, rotation=(0.0, 0.0, TURN), centre=(0.0, RADIUS, 
 DISC = Travel(1, rotation=(0.0, 0.0, TURN), centre=(0.0, -TRACK, 0.0))
 BELT = Travel(1, translation=(60.0, 0.0, 0.0))
 PIN, RING = (0, "bottom"), (1, "top")
+
+
+OBLIQUE = replace(BELT, translation=(30.0, 40.0, 0.0))
+QUADRATIC = [(DISC, 0.2), (OBLIQUE, 0.0), (DISC, 0.0), (BELT, 0.0), (BELT, 0.2), (OBLIQUE, 0.2)]
+CASES = [*((travel, friction, 1) for travel, friction in QUADRATIC), *sampled([(*case, 2) for case in QUADRATIC], 2)]
+"""Travel, friction and order of the cells; of order 2 those that take seconds each are `evidence` but for two."""
 
 
 def punch(order: int = 1, friction: float = 0.0) -> Problem:
@@ -89,9 +96,7 @@ def in_strips(study: WearStudy, state: CycleState, strips: Floats) -> tuple[Floa
     return lost, taken
 
 
-@pytest.mark.parametrize("order", [1, 2])
-@pytest.mark.parametrize("friction", [0.0, 0.2])
-@pytest.mark.parametrize("travel", [DISC, BELT, replace(BELT, translation=(30.0, 40.0, 0.0))])
+@pytest.mark.parametrize(("travel", "friction", "order"), CASES)
 def test_track_loses_what_passes_over_it(travel: Travel, friction: float, order: int) -> None:
     """Problem: a square punch on a rotating disc, and on a belt that slides along its side and at an angle. Exact: at c
     the track loses (K/H)∫p along the path, so a strip between two c loses the wear of the points that pass over it, for

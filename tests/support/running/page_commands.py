@@ -14,17 +14,16 @@ from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
 
+PLAIN = ("output.error_bars=false", "output.pictures=false", "output.animation=false")
 CHEAP = (
     "sweep.positions=4", "contact.friction=[0.1]", "mesh.order=1", "mesh.elements_per_contact_width=0.5",
-    "pinion.face_width_mm=2", "wheel.face_width_mm=2", "load.torque_Nm=20", "output.error_bars=false",
-    "output.pictures=false", "output.animation=false",
+    "pinion.face_width_mm=2", "wheel.face_width_mm=2", "load.torque_Nm=20", *PLAIN,
 )
 """Settings that stand behind those of a line: what it computes takes seconds then."""
-FEW = ("sweep.positions=6",)
+FEW = ("sweep.positions=6", *PLAIN)
 FEWER = {
     "run": CHEAP, "loads": CHEAP, "excitation": FEW, "strength": FEW,
-    "transient": (*FEW, "output.error_bars=false", "output.animation=false"), "fatigue": CHEAP,
-    "study": (*FEW, "mesh.level=quick", "output.error_bars=false"),
+    "transient": FEW, "fatigue": CHEAP, "study": (*FEW, "mesh.level=quick"),
     "dynamics": (*FEW, "dynamics.speeds=20", "dynamics.torque_percents=[50,100,200]", "dynamics.mesh=\"tangent\""),
 }
 """Command -> its settings."""

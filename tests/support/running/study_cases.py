@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
+from evidence.tables import read_csv
 from evolvent.run.study.plan.study_file import load_study
 from evolvent.run.study.plan.study_scenes import StudyScene, study_scenes
 from evolvent.run.study.results.figures import gathered_figures
@@ -42,5 +42,4 @@ def study_of(folder: Path, text: str = TORQUES) -> Study:
 
 def table(out: Path) -> list[dict[str, str]]:
     """Rows of a study's table."""
-    with open(out / "study.csv", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+    return read_csv(out / "study.csv")

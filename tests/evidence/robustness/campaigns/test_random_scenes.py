@@ -104,7 +104,7 @@ def test_campaign_survives_a_crash_and_a_hang(monkeypatch: pytest.MonkeyPatch) -
         "    print(json.dumps({'seed': seed, 'verdict': 'CONVERGED'}), flush=True)\n"
     )
     monkeypatch.setattr(campaign, "module_run", lambda _, __, *range_: (sys.executable, "-c", crash, *map(str, range_)))
-    verdicts = [o.verdict for o in campaign.campaign(0, 6, patience=5.0)]
+    verdicts = [o.verdict for o in campaign.campaign(0, 6, patience=3.0)]
     good = Verdict.CONVERGED
     assert verdicts == [good, good, Verdict.CRASHED, good, Verdict.HUNG, good]
 

@@ -51,6 +51,7 @@ def test_corners_of_the_ball_converge_to_hertz(name: str) -> None:
     assert SETTINGS[name].cell().error < 1e-3
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_theta_does_not_matter_to_gears() -> None:
     """He's pair as two whole bodies, θ = −1: the wheel's moment and the transmission error of the sweep, which has

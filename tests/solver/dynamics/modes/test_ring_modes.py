@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
@@ -15,13 +14,11 @@ from evolvent.fem.condensation.schur_complement import Factor
 from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.gears.condensed_gear import GearBody, matching_cuts
 from evolvent.gears.full_gear import whole_mesh, whole_system
-from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.kinematics import turn
 from evolvent.gears.problem.gear_inertia import polar_moment
-from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
-from tests.support.gear_cases import helical_scene, spur_scene
+from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
 THREE = ModeChoice(0.0, per_harmonic=3)
 
@@ -31,9 +28,9 @@ def bodies(kind: str) -> tuple[GearBody, ...]:
     scenes = {
         "spur": lambda: spur_scene("mesh.level=quick"),
         "spur of order 1": lambda: spur_scene("mesh.level=quick", "mesh.order=1"),
-        "helical": lambda: helical_scene("mesh.order=1"),
+        "helical": lambda: helical_scene("mesh.order=1", "pinion.face_width_mm=4", "wheel.face_width_mm=4"),
     }
-    return prepare_model(gear_problem(scenes[kind]()), MPI.COMM_SELF).model.bodies
+    return model_of(scenes[kind]()).bodies
 
 
 @cache

@@ -1,6 +1,6 @@
 """Transients of a pair whose flanks are meshed in levels: the compliance is then known by products alone.
 
-Yang's pair on 2.8 mm of its face, at level quick, one mode of each harmonic, friction 0.2.
+A helical pair 3 mm wide, one level on 6 × 2 coarse cells, one mode of each harmonic, friction 0.2.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import pytest
 from mpi4py import MPI
 
 from evolvent.contact.newton.applied_compliance import AppliedCompliance
@@ -22,26 +21,27 @@ from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransie
 from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
-from evolvent_meshes.gears.pair import GearPair
-from tests.support.paper_pairs import yang
+from evolvent.scene.gear_problem import gear_problem
+from tests.support.gear_cases import few_cells, helical_scene
 
 POSITIONS, FRICTION = 8, 0.2
 
 
 def problem() -> GearProblem:
     """With one level."""
-    pair = yang()
-    pinion, wheel = (replace(gear, face_width=2.8) for gear in pair.gears)
-    narrow = GearPair(pinion, wheel, pair.centre_distance)
-    return GearProblem(narrow, 40e3, mesh=MeshSettings("quick", two_level=True))
+    narrow = helical_scene("pinion.face_width_mm=3", "wheel.face_width_mm=3", "load.torque_Nm=60")
+    return replace(gear_problem(narrow), mesh=MeshSettings("quick", two_level=True))
 
 
 @cache
 def condensed() -> tuple[GearModel, tuple[GearModes, GearModes]]:
-    """The pair and its modes."""
-    model = prepare_model(problem(), MPI.COMM_SELF).model
-    pinion, wheel = (gear_modes(body, ModeChoice(0.0, 1), mode_mesh(problem(), body)) for body in model.bodies)
-    return model, (pinion, wheel)
+    """The pair and its modes: of the pinion on the coarse sector that a run takes, of the wheel on that of its levels.
+    """
+    model, choice = prepare_model(problem(), MPI.COMM_SELF, few_cells).model, ModeChoice(0.0, 1)
+    pinion, wheel = model.bodies
+    coarse = mode_mesh(problem(), pinion)
+    assert coarse is not None
+    return model, (gear_modes(pinion, choice, coarse), gear_modes(wheel, choice, wheel.mesh))
 
 
 def moving(friction: float, rpm: float) -> PairTransient:
@@ -60,7 +60,6 @@ def first(transient: PairTransient) -> MovingMoment:
     return next(transient.run(start.at(transient.time_step), 1))
 
 
-@pytest.mark.slow
 def test_a_step_with_friction_is_in_balance() -> None:
     """3000 r/min, μ = 0.2, one mode of each harmonic of both gears: the step solved with products alone is in balance.
     Momentum and reaction, summed from the nodes' forces and displacements, hold to 1e-8, and the modes vibrate."""
@@ -68,5 +67,5 @@ def test_a_step_with_friction_is_in_balance() -> None:
     moment = first(fast)
     assert moment.residuals.momentum < 1e-8 and moment.residuals.reaction < 1e-8
     assert all(isinstance(at.compliance, AppliedCompliance) for at in fast.contacts.store.kept.values())
-    assert len(moment.state.vibration) == 17 + 60
+    assert len(moment.state.vibration) == 20 + 24
     assert np.abs(moment.state.vibration).max() > 1e-5 * np.abs(moment.state.motion.position).max()

@@ -1,6 +1,6 @@
 """Gears whose flanks have levels of their own, from the public API: what is refused, and a position with friction.
 
-Yang's pair, 2.1 mm wide, with cells that are larger than the contact needs.
+Yang's pair, 1.4 mm wide, with cells that are larger than the contact needs.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from tests.support.paper_pairs import yang
 
 
 def narrow(mesh: MeshSettings, options: GearOptions = GearOptions()) -> GearProblem:  # noqa: B008  frozen
-    pinion, wheel = (replace(gear, face_width=2.1) for gear in yang().gears)
+    pinion, wheel = (replace(gear, face_width=1.4) for gear in yang().gears)
     wheel = replace(wheel, bore_diameter=126.0)  # a disc 2 mm thick would bend under the axial force
-    return GearProblem(GearPair(pinion, wheel, yang().centre_distance), 6e3, mesh=mesh, options=options)
+    return GearProblem(GearPair(pinion, wheel, yang().centre_distance), 4e3, mesh=mesh, options=options)
 
 
 def test_cells_and_options_without_levels_are_refused() -> None:
@@ -34,9 +34,9 @@ def test_cells_and_options_without_levels_are_refused() -> None:
 def test_two_levels_and_one_give_the_same_position() -> None:
     """At μ = 0.2, against a mesh of one level with other cells: the transmission error within 0.5 %, both torques
     within 0.1 %; balanced as `certify` wants it. Wear refuses such gears."""
-    gears = condense(narrow(MeshSettings("quick", 0.8, two_level=True)))
+    gears = condense(narrow(MeshSettings("quick", 0.5, two_level=True)))
     found = solve_single_position(gears, 0.0, 0.2)
-    wanted = solve_single_position(condense(narrow(MeshSettings("quick", 0.8))), 0.0, 0.2)
+    wanted = solve_single_position(condense(narrow(MeshSettings("quick", 0.5))), 0.0, 0.2)
     assert len(gears.bodies[0].flank.points) > 500
     assert found.transmission_error == pytest.approx(wanted.transmission_error, rel=5e-3)
     assert np.array(found.torques) == pytest.approx(np.array(wanted.torques), rel=1e-3)

@@ -1,6 +1,6 @@
 """Corrections of a flank: which cells have patches, and what congruence and interpolation change.
 
-Yang's pinion, 3 mm wide, 24 × 6 coarse cells on the flank, twice as long along the face as along the profile, that are
+Yang's pinion, 2.5 mm wide, 18 × 5 coarse cells on the flank, longer along the face than along the profile, that are
 split in depth; Nitsche's functionals on the fine cells.
 """
 
@@ -27,9 +27,9 @@ from tests.support.meshes.sector_cases import gear_and_start
 def correction() -> StripCorrection:
     """Of all patches."""
     gear, start = gear_and_start("yang pinion")
-    gear = replace(gear, face_width=3.0)
+    gear = replace(gear, face_width=2.5)
     resolution = SectorResolution(
-        profile_elements=24, face_elements=6, end_size_ratio=1.0, flank_start_diameter=start,
+        profile_elements=18, face_elements=5, end_size_ratio=1.0, flank_start_diameter=start,
         layer_depths=(0.2, 0.25, 0.285),
     )
     body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (2, 1, 1)))

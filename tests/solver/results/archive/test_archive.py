@@ -83,27 +83,28 @@ def test_finished_run_has_all_its_files(whole: Path) -> None:
     assert (whole / "run.log").read_text(encoding="utf-8").count("balance") == 5
 
 
-@pytest.mark.parametrize(
-    ("how", "ranks"),
-    [
-        ("kill-mesh", 1),
-        ("kill-before-1", 1),
-        ("kill-half-4", 1),
-        pytest.param("kill-before-8", 2, marks=pytest.mark.mpi),
-        ("kill-before-11", 1),
-    ],
-)
-def test_killed_run_resumes_to_the_same_results(
-    how: str, ranks: int, whole: Path, run_script: RunScript, tmp_path: Path
-) -> None:
-    """kill -9 while meshing, between a position and its state, amid writing, at the position that closes the pitch:
-    resumed it is the undisturbed run. One is resumed on two ranks."""
+@pytest.mark.mpi
+def test_killed_run_resumes_to_the_same_results(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
+    """kill -9 while meshing, before the gears are kept, amid writing a position, between a position and its state, and
+    on two ranks at the position that closes the pitch: resumed after each, the run is the undisturbed one."""
     out = tmp_path / "out"
-    assert run_script(BROKEN_RUN, how, *arguments(out)).returncode == -9
-    assert not (out / "summary.json").exists()
-    done = run_script(BROKEN_RUN, "ok", *arguments(out, "--resume"), ranks=ranks)
+    struck = ("kill-mesh", 1, 0), ("kill-before-1", 1, 0), ("kill-half-4", 1, 1), ("kill-before-4", 1, 2), (
+        "kill-before-3", 2, 3
+    )
+    for number, (how, ranks, complete) in enumerate(struck):
+        done = run_script(BROKEN_RUN, how, *arguments(out, *["--resume"] * (number > 0)), ranks=ranks)
+        assert done.returncode == (-9 if ranks == 1 else 137), done.stderr
+        assert not (out / "summary.json").exists()
+        assert kept_positions(out) == complete
+    done = run_script(BROKEN_RUN, "ok", *arguments(out, "--resume"))
     assert done.returncode == 0, done.stderr
     assert_same(out, whole)
+
+
+def kept_positions(out: Path) -> int:
+    """Positions from which a run is resumed."""
+    state = out / "results/state.npz"
+    return int(read_arrays(state)["complete"]) if state.exists() else 0
 
 
 def test_archived_friction_history_continues_the_sweep(tmp_path: Path) -> None:
@@ -172,19 +173,19 @@ def test_overwriting_run_removes_files_of_the_earlier_run_only(
     assert torques == pytest.approx([100.0] * 8)
 
 
-@pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_full_disk_leaves_a_run_that_resumes(ranks: int, whole: Path, run_script: RunScript, tmp_path: Path) -> None:
-    """No space for the fourth file: status 1 and the reason, no half-written file, the positions before it intact, and
-    once there is room --resume completes the run."""
+@pytest.mark.mpi
+def test_full_disk_leaves_a_run_that_resumes(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
+    """No space for the fourth file, on two ranks: status 1 and the reason, no half-written file, the positions before
+    it intact, and once there is room --resume on one rank completes the run."""
     out = tmp_path / "out"
-    done = run_script(BROKEN_RUN, "full-4", *arguments(out), ranks=ranks)
+    done = run_script(BROKEN_RUN, "full-4", *arguments(out), ranks=2)
     assert done.returncode == 1
     wanted = r"position_0001\.npz: wanted to write \S+ MB, found No space left on device; make room"
     assert re.search(wanted, done.stderr)
     assert "--resume" in done.stderr
     assert not list(out.rglob("*.evolvent-part*"))
     assert read_arrays(out / "results" / "state.npz")["complete"] == 1
-    assert run_script(BROKEN_RUN, "ok", *arguments(out, "--resume"), ranks=ranks).returncode == 0
+    assert run_script(BROKEN_RUN, "ok", *arguments(out, "--resume")).returncode == 0
     assert_same(out, whole)
 
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import csv
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
+from evidence.tables import read_csv
 from evolvent.dynamics.excitation import misaligned_mesh
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.misaligned_position import misaligned_on
 from evolvent.gears.sweep.position_search import SharedPosition
 from evolvent.run.study.misalignment_line import line_name, solve_line
-from evolvent.run.study.results.scene_record import scene_folder
+from evolvent.run.study.results.scene_record import SceneRecord, scene_folder
 from evolvent.run.study.scene_task import SceneTask, condense, solve
 from tests.support.checkout import ROOT
 from tests.support.running.study_cases import scenes_of
@@ -23,6 +24,7 @@ compute = "excitation"
 
 [set]
 mesh.elements_per_contact_width = 0.5
+mesh.order = 1
 contact.friction = 0.0
 sweep.positions = 4
 
@@ -39,39 +41,51 @@ def tasks(folder: Path, text: str = LINE, compute: str = "excitation") -> list[S
 
 def values(task: SceneTask, column: str) -> dict[tuple[str, str], float]:
     """A column of a scene's harmonics.csv, by quantity and harmonic."""
-    with open(task.folder / "harmonics.csv", encoding="utf-8") as stream:
-        return {(row["quantity"], row["harmonic"]): float(row[column]) for row in csv.DictReader(stream)}
+    rows = read_csv(task.folder / "harmonics.csv")
+    return {(row["quantity"], row["harmonic"]): float(row[column]) for row in rows}
 
 
-def test_a_line_is_solved_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Three scenes: two of the three misalignments take the search of the middle one, on both meshes of four
-    positions. Figures are those of scenes solved alone within their error bars, the middle one's to rounding."""
+@dataclass(frozen=True)
+class Solved:
+    """A line that was solved together, and how often a scene took the search of another one."""
+
+    tasks: list[SceneTask]
+    records: list[SceneRecord]
+    taken: int
+
+
+@pytest.fixture(scope="module")
+def line(tmp_path_factory: pytest.TempPathFactory) -> Solved:
+    """The three scenes of LINE."""
     used: list[object] = []
 
     def counted(model: GearModel, shared: SharedPosition) -> SharedPosition | None:
         used.append(model)
         return misaligned_on(model, shared)
 
-    monkeypatch.setattr(misaligned_mesh, "misaligned_on", counted)
-    together, alone = tasks(tmp_path), tasks(tmp_path, f"title = \"alone\"\n{LINE}")
-    records = solve_line(together, condense(together))
-    assert [record.status for record in records] == ["done"] * 3
-    assert len(used) == 2 * 4 * 2
-    for task in alone:
-        own = SceneTask(task.name, tmp_path / "alone" / task.name, task.compute, task.scene)
-        assert solve(own).status == "done"
-        found, exact, bars = values(task, "mean"), values(own, "mean"), values(own, "mean_error")
+    together = tasks(tmp_path_factory.mktemp("line"))
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(misaligned_mesh, "misaligned_on", counted)
+        return Solved(together, solve_line(together, condense(together)), len(used))
+
+
+def test_a_line_is_solved_together(line: Solved, tmp_path: Path) -> None:
+    """Three scenes: two of the three misalignments take the search of the middle one, on both meshes of four
+    positions. Figures are those of scenes solved alone within their error bars, the middle one's to rounding."""
+    assert [record.status for record in line.records] == ["done"] * 3
+    assert line.taken == 2 * 4 * 2
+    for task, alone in zip(line.tasks, tasks(tmp_path)):
+        assert solve(alone).status == "done"
+        found, exact, bars = values(task, "mean"), values(alone, "mean"), values(alone, "mean_error")
         for key, value in exact.items():
             allowed = bars[key] if task.scene.pair.misalignment_um and key[0] != "unloaded_transmission_error_um" else 0
             assert found[key] == pytest.approx(value, abs=0.1 * allowed, rel=1e-6)
 
 
-def test_scenes_that_are_done_are_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_scenes_that_are_done_are_left(line: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
     """A line again: nothing is searched, the records are the same."""
-    line = tasks(tmp_path, LINE.replace("[4.0, -4.0, 0.0]", "[4.0, 0.0]"))
-    first = solve_line(line, condense(line))
     monkeypatch.setattr(misaligned_mesh, "shared_position", None)
-    assert solve_line(line, condense(line)) == first
+    assert solve_line(line.tasks, condense(line.tasks)) == line.records
 
 
 def test_names_of_lines(tmp_path: Path) -> None:

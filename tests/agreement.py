@@ -32,8 +32,8 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.results.archive.store import ArchiveError, arrays_bytes, read_arrays
 from evolvent.run.kinds.run import Run
 from evolvent_meshes.files import write_bytes
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import helical_scene, spur_scene
-from tests.support.quiet import quietly
 
 TOLERANCE = 1e-6
 NO_RESULTS = {

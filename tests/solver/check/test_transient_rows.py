@@ -15,8 +15,8 @@ from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from tests.support.checkout import ROOT
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import spur_scene
-from tests.support.quiet import quietly
 
 NATURAL = 4566.0 / 60.0 * 50.0
 """[Hz] of He's pair, by ISO's natural speed (test_vibration_rows.py)."""

@@ -24,7 +24,7 @@ from evolvent.run.kinds.strength import Strength
 from evolvent.run.kinds.transient import UNLIKE_STATICS, Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
-from tests.support.quiet import quietly
+from tests.support.computing.quiet import quietly
 
 BENT, BETWEEN = 344, 2e-3
 ASKED = "exact.parts=deflected-flanks"

@@ -23,8 +23,8 @@ from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.skips import skip_named
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import HELICAL
-from tests.support.quiet import quietly
 from tests.support.running.processes import BROKEN_RUN, RunScript
 
 SMALL = (

@@ -28,8 +28,8 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import SKIPS, one_mesh_reason, skip_named, skipped, switched_off
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
-from tests.support.quiet import quietly
 from tests.support.running.patches import calling_first
 from tests.support.running.processes import RunScript
 from tests.support.scene_texts import WEAR

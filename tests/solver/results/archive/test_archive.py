@@ -78,7 +78,8 @@ def test_finished_run_has_all_its_files(whole: Path) -> None:
     """All files are there, none is half-written, and the log tells the positions: the pitch, and the first of it
     again, which closes it."""
     names = {path.name for path in (whole / "results").glob("*.npz")}
-    assert names == {"gears.npz", "state.npz", "errors.npz", *(f"position_{k:04d}.npz" for k in range(5))}
+    own = {"gears.npz", "state.npz", *(f"position_{k:04d}.npz" for k in range(5))}
+    assert names == {"errors.npz", *own, *(f"coarse_{name}" for name in own)}
     assert not list(whole.rglob("*.evolvent-part*"))
     assert (whole / "run.log").read_text(encoding="utf-8").count("balance") == 5
 

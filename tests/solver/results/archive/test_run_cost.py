@@ -40,7 +40,7 @@ def test_cost_of_two_parts_adds_times_and_takes_the_larger_memory() -> None:
 
 def test_cost_is_read_as_written(tmp_path: Path) -> None:
     """Nothing kept is nothing spent; what was kept comes back; what cannot be read is said, not counted as nothing."""
-    folder, cost = RunFolder(tmp_path), Cost(Timings(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 21.0), 100.0)
+    folder, cost = RunFolder(tmp_path), Cost(Timings(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 21.0), 100.0, "strength")
     assert read_cost(folder) == Cost()
     write_cost(folder, cost)
     assert read_cost(folder) == cost

@@ -40,8 +40,8 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.splitting import halved
 from evolvent_meshes.sector.section import SectorResolution
+from tests.support.computing.quiet import prepared_without, quietly
 from tests.support.gear_cases import spur_scene
-from tests.support.quiet import prepared_without, quietly
 from tests.support.running.processes import BROKEN_RUN, RunScript
 from tests.support.synthetic_run import synthetic_run
 

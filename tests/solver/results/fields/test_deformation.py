@@ -18,8 +18,8 @@ from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.fields.deformation import Deformation
 from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import Scene
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
-from tests.support.quiet import quietly
 
 Case = tuple[GearModel, list[SweptPosition], Deformation]
 

@@ -13,8 +13,8 @@ from evolvent.run.kinds.dynamics import Dynamics
 from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import QUIET
-from tests.support.quiet import quietly
 
 SPEEDS = (4000.0, 6000.0)
 

@@ -4,29 +4,24 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping
 from pathlib import Path
+from shutil import copytree
 
 import numpy as np
 import pytest
 
 from evidence.calls import temporary_call
-from evolvent.gears import gear_model
 from evolvent.gears.meshing.companion_meshes import companion_mesh
-from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.store import ArchiveError
 from evolvent.run.dynamics.excitation import loaded_pitch
-from evolvent.run.dynamics.kept_positions import KeptPositions
 from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.kept_pitch import COMPANION
 from evolvent.run.kinds.excitation import Excitation
 from evolvent.scene.scene import SceneError
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshError
+from tests.support.computing.quiet import prepared_without, quietly
 from tests.support.gear_cases import model_of, spur_scene, swept
-from tests.support.quiet import prepared_without, quietly
-from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.redrawn import redrawn
 
 SETTINGS = "mesh.level=quick", "output.pictures=true", "sweep.positions=6"
 PERCENTS = [50.0, 100.0]
@@ -47,11 +42,6 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("excitation")
     assert quietly(Excitation.under(scene_torques(spur_scene(*SETTINGS), PERCENTS)), folder) == []
     return folder
-
-
-def test_plot_draws_the_excitation_again(out: Path, tmp_path: Path) -> None:
-    """From the tables alone, byte by byte."""
-    assert redrawn(out, tmp_path) == {"excitation.png"}
 
 
 def test_table_has_what_a_sweep_finds(out: Path) -> None:
@@ -115,43 +105,11 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path) -> None:
     assert np.isnan(column(rows(tmp_path / "excitation.csv"), "secant_stiffness_N_per_um_error")).all()
 
 
-def test_results_are_not_replaced_unasked(out: Path) -> None:
-    """A second call is refused before anything is computed, and says what to do."""
-    loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
-    with pytest.raises(FolderError, match="remedy: --resume goes on from them, --overwrite"):
-        quietly(Excitation.under(loads), out)
-
-
-class Killed(Exception):
-    """A call ends here."""
-
-
-def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Killed after the second of six positions and resumed: four are solved, and the table is that of a call that was
-    not stopped, 1e-8. Resumed once more nothing is meshed. With other torques it is refused."""
-    loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
-    write, counts = KeptPositions.write, []
-
-    def killed(kept: KeptPositions, found: Mapping[int, Floats]) -> None:
-        write(kept, found)
-        counts.append(len(found))
-        if len(found) == 2:
-            raise Killed
-
-    monkeypatch.setattr(KeptPositions, "write", killed)
-    with pytest.raises(Killed):
-        quietly(Excitation.under(loads), tmp_path)
-    with pytest.raises(FolderError, match=r"found the results of an earlier call \(results/excitation\.npz\)"):
-        quietly(Excitation.under(loads), tmp_path)
-    assert quietly(Excitation.under(loads), tmp_path, resume=True) == []
-    assert counts == [1, 2, 3, 4, 5, 6]
-    for name in ("transmission_error_um", "tangent_stiffness_N_per_um"):
-        whole, resumed = (column(rows(folder / "excitation.csv"), name) for folder in (out, tmp_path))
-        assert resumed == pytest.approx(whole, rel=1e-8)
-    monkeypatch.setattr(gear_model, "condensed_gears", None)
-    assert quietly(Excitation.under(loads), tmp_path, resume=True) == []
+def test_positions_of_other_torques_are_refused(out: Path, tmp_path: Path) -> None:
+    """Resumed with one torque less: what is stored belongs to the longer list."""
+    loads = scene_torques(spur_scene(*SETTINGS), PERCENTS[:1])
     with pytest.raises(ArchiveError, match="found those of other gears, meshes, torques or positions"):
-        quietly(Excitation.under(scene_torques(spur_scene(*SETTINGS), PERCENTS[:1])), tmp_path, resume=True)
+        quietly(Excitation.under(loads), copytree(out, tmp_path / "out"), resume=True)
 
 
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
@@ -167,28 +125,3 @@ def test_two_positions_are_too_few(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"sweep\.positions: found 2; allowed: 3 or more"):
         quietly(Excitation.under(loads), tmp_path)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_foreign_files_stay(tmp_path: Path) -> None:
-    """Also with --overwrite a file that no call has written is left as it is."""
-    (tmp_path / "harmonics.csv").write_text("mine")
-    loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
-    with pytest.raises(FolderError, match=r"harmonics\.csv"):
-        quietly(Excitation.under(loads), tmp_path, overwrite=True)
-    assert (tmp_path / "harmonics.csv").read_text() == "mine"
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
-    """Two ranks divide the positions: the same table to 1e-6, and one line at the end."""
-    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
-    arguments = ["excitation", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--percent", "50,100"]
-    for setting in SETTINGS:
-        arguments += ["--set", setting]
-    done = run_script("-c", code, *arguments, ranks=ranks)
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("done: ") == 1
-    for name in ("transmission_error_um", "tangent_stiffness_N_per_um"):
-        one, two = (column(rows(folder / "excitation.csv"), name) for folder in (out, tmp_path / "out"))
-        assert two == pytest.approx(one, rel=1e-6)

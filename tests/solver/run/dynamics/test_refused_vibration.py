@@ -20,8 +20,8 @@ from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import QUIET
-from tests.support.quiet import quietly
 
 
 def scene(*settings: str) -> Scene:

@@ -27,9 +27,9 @@ from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.arrays import Floats
 from tests.support.checkout import ROOT
+from tests.support.computing.quiet import quietly
+from tests.support.computing.redrawn import redrawn
 from tests.support.gear_cases import QUIET, spur_scene
-from tests.support.quiet import quietly
-from tests.support.running.redrawn import redrawn
 
 PHASES = np.arange(12) / 12
 STIFFNESS = 2.6e5 * (1.0 + 0.04 * np.cos(2.0 * np.pi * PHASES) + 0.02 * np.sin(4.0 * np.pi * PHASES))

@@ -24,10 +24,9 @@ from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.checkout import ROOT
+from tests.support.computing.quiet import quietly
+from tests.support.computing.redrawn import redrawn
 from tests.support.gear_cases import QUIET
-from tests.support.quiet import quietly
-from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.redrawn import redrawn
 
 SETTINGS = (
     "output.pictures=true", "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]",
@@ -54,11 +53,6 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert bodies.startswith("gear bodies: their own vibration of") and "(mesh harmonic 3)" in bodies
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")
     return folder
-
-
-def test_plot_draws_the_vibration_again(out: Path, tmp_path: Path) -> None:
-    """From the tables alone, byte by byte."""
-    assert redrawn(out, tmp_path) == {"excitation.png", "vibration.png", "waterfall.png"}
 
 
 def test_warnings_are_kept(out: Path) -> None:
@@ -261,30 +255,6 @@ def test_no_factor_of_the_standard_without_deviations(tmp_path: Path) -> None:
     (said,) = [each for each in quietly(Dynamics.of(one), tmp_path) if each.startswith("dynamic_factor_iso: ")]
     assert said.endswith("give dynamics.profile_deviation_um")
     assert {line["dynamic_factor_iso"] for line in rows(tmp_path / "response.csv")} == {"nan"}
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
-    """Two ranks divide the positions of the excitation: the same response to 1e-4, and one line at the end."""
-    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
-    arguments = ["dynamics", "demos/he2022_dynamics.toml", "--out", str(tmp_path / "out")]
-    for setting in SETTINGS:
-        arguments += ["--set", setting]
-    done = run_script("-c", code, *arguments, ranks=ranks)
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("done: ") == 1
-    one, two = (
-        np.array([float(line["largest_force_N"]) for line in rows(folder / "response.csv")])
-        for folder in (out, tmp_path / "out")
-    )
-    assert two == pytest.approx(one, rel=1e-4)
-
-
-def test_results_are_not_replaced_unasked(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Status 2 before anything is computed."""
-    assert main(["dynamics", str(ROOT / "demos/he2022_dynamics.toml"), "--out", str(out)]) == 2
-    assert "--overwrite" in capsys.readouterr().err
 
 
 def test_wear_does_not_keep_a_scene_from_its_vibration(tmp_path: Path) -> None:

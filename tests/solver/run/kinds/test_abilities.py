@@ -1,16 +1,18 @@
 """What every computation can do, whichever it is: it is resumed, leaves its scene, log and cost, is drawn again, is
-certified, and is known to the command line and to studies.
+certified, does not depend on the number of ranks, and is known to the command line and to studies.
 
-Problem: He's spur pair in plane strain, a few positions of a pitch on coarse meshes. Exact: a call that was interrupted
-and resumed gives the tables of one that was not, within the difference of two runs (docs/checks.md), and solves nothing
-again.
+Problem: the small scene of `tests.support.computing.small_kinds`. Exact: a call that was interrupted and resumed, or
+that several ranks have computed, gives the tables of one that was not, within the difference of two runs
+(docs/checks.md), and solves nothing again.
 """
 
 from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from shutil import copytree
 from typing import Any
@@ -22,48 +24,54 @@ from evolvent.dynamics.excitation import loaded_mesh
 from evolvent.gears.solution import certificates
 from evolvent.gears.solution.certificates import PitchImbalance
 from evolvent.gears.sweep import pitch_sweep
+from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.store import Store
-from evolvent.run.computation import Computation
 from evolvent.run.kinds.all import KINDS, Kind
 from evolvent.run.study.plan.study_file import COMPUTATIONS
 from evolvent.scene.scene import load_scene
 from evolvent.wear.gears import gear_wear
-from tests.support.gear_cases import spur_scene
-from tests.support.quiet import quietly
+from tests.support.computing.quiet import quietly
+from tests.support.computing.redrawn import redrawn
+from tests.support.computing.same_tables import same_tables
+from tests.support.computing.small_kinds import small
 from tests.support.running.patches import calling_first
-from tests.support.running.redrawn import redrawn
-from tests.support.same_tables import same_tables
+from tests.support.running.processes import RunScript
 
-SMALL = (
-    "mesh.level=quick", "sweep.positions=4", "contact.friction=[0.1]", "output.error_bars=true",
-    "output.animation=false", "output.fields=false",
-)
-MORE: Mapping[str, tuple[str, ...]] = {
-    "wear": ("wear.cycles=1e5", "wear.pinion_mm2_per_N=1e-12", "wear.wheel_mm2_per_N=1e-12"),
-    "dynamics": ("dynamics.speeds=3", "dynamics.torque_percents=[50,100]", "dynamics.backlash_um=50"),
-    "transient": ("transient.speeds_rpm=[1000,2000]", "transient.mesh_periods=3"),
-}
-SOLVED = (pitch_sweep, "shared_position"), (loaded_mesh, "shared_position"), (gear_wear, "shared_position")
-"""Functions that solve a position, where they are called."""
+SOLVING = pitch_sweep, loaded_mesh, gear_wear
+"""Modules that solve positions by `shared_position`."""
 
 
 class Interrupted(BaseException):
     """Raised in place of a signal."""
 
 
-def computation_of(kind: Kind, *settings: str) -> Computation[Any]:
-    return kind.load().of(spur_scene(*SMALL, *MORE.get(kind.name, ()), *settings), (50.0, 100.0))
+@dataclass(frozen=True)
+class Whole:
+    """A computation that was not interrupted."""
 
-
-@pytest.fixture
-def solved(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    folder: Path
+    """Its folder."""
+    counts: Counter[str]
     """Number of positions that were solved, and of results that were stored."""
-    counts: Counter[str] = Counter()
-    for module, name in SOLVED:
-        counted = calling_first(getattr(module, name), lambda *_, **__: counts.update(["positions"]))
-        monkeypatch.setattr(module, name, counted)
-    monkeypatch.setattr(Store, "write", calling_first(Store.write, lambda *_, **__: counts.update(["stored"])))
-    return counts
+
+
+@contextmanager
+def counted(interrupted_after: int = 0) -> Iterator[Counter[str]]:
+    """Counts solved positions and stored results. interrupted_after: number of results after which the call ends."""
+    counts, write = Counter[str](), Store.write
+
+    def written(store: Store, *given: Any) -> None:
+        write(store, *given)
+        counts["stored"] += 1
+        if counts["stored"] == interrupted_after:
+            raise Interrupted
+
+    with pytest.MonkeyPatch.context() as patch:
+        for module in SOLVING:
+            solved = calling_first(module.shared_position, lambda *_, **__: counts.update(["positions"]))
+            patch.setattr(module, "shared_position", solved)
+        patch.setattr(Store, "write", written)
+        yield counts
 
 
 @pytest.fixture(scope="module", params=KINDS, ids=lambda kind: kind.name)
@@ -73,74 +81,96 @@ def kind(request: pytest.FixtureRequest) -> Kind:
 
 
 @pytest.fixture(scope="module")
-def whole(kind: Kind, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a computation that was not interrupted."""
+def whole(kind: Kind, tmp_path_factory: pytest.TempPathFactory) -> Whole:
     folder = tmp_path_factory.mktemp(kind.name)
-    quietly(computation_of(kind), folder)
-    return folder
+    with counted() as counts:
+        quietly(small(kind), folder)
+    return Whole(folder, counts)
 
 
-def test_interrupted_computation_solves_nothing_again(
-    kind: Kind, whole: Path, tmp_path: Path, solved: Counter[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture(scope="module")
+def ranks_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("ranks")
+
+
+@pytest.fixture
+def on_two_ranks(run_script: RunScript, ranks_folder: Path) -> Path:
+    """A folder with those of all computations, by one process of mpirun with two ranks, which the first test starts."""
+    if not any(ranks_folder.iterdir()):
+        done = run_script("-m", "tests.support.computing.small_kinds", str(ranks_folder), ranks=2, timeout=900.0)
+        assert done.returncode == 0, done.stderr[-3000:]
+    return ranks_folder
+
+
+def test_interrupted_computation_solves_nothing_again(kind: Kind, whole: Whole, tmp_path: Path) -> None:
     """Interrupted as half of its results are stored, resumed: as many positions in all as without interruption, and the
     same tables; once it is complete, nothing is solved."""
-    quietly(computation_of(kind), tmp_path / "counted")
-    wanted, half = solved["positions"], solved["stored"] // 2
+    wanted, half = whole.counts["positions"], whole.counts["stored"] // 2
     assert wanted > 3 and half > 1
-    solved.clear()
-    write = Store.write
-
-    def interrupted(store: Store, *given: Any) -> None:
-        write(store, *given)
-        if solved["stored"] == half:
-            raise Interrupted
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Store, "write", interrupted)
+    with counted(half) as counts:
         with pytest.raises(Interrupted):
-            quietly(computation_of(kind), tmp_path / "out")
-    assert 0 < solved["positions"] < wanted
-    quietly(computation_of(kind), tmp_path / "out", resume=True)
-    assert solved["positions"] == wanted
-    assert same_tables(tmp_path / "out", whole)
-    quietly(computation_of(kind), tmp_path / "out", resume=True)
-    assert solved["positions"] == wanted and same_tables(tmp_path / "out", whole)
+            quietly(small(kind), tmp_path)
+        assert 0 < counts["positions"] < wanted
+        quietly(small(kind), tmp_path, resume=True)
+        assert counts["positions"] == wanted
+        assert same_tables(tmp_path, whole.folder)
+        quietly(small(kind), tmp_path, resume=True)
+        assert counts["positions"] == wanted and same_tables(tmp_path, whole.folder)
 
 
-def test_folder_has_scene_log_and_cost(kind: Kind, whole: Path) -> None:
+@pytest.mark.mpi
+def test_results_do_not_depend_on_ranks(kind: Kind, whole: Whole, on_two_ranks: Path) -> None:
+    """The tables of one rank and of two."""
+    assert same_tables(on_two_ranks / kind.name, whole.folder)
+
+
+def test_folder_has_scene_log_and_cost(kind: Kind, whole: Whole) -> None:
     """The scene that repeats it, its log to the end, and what it has cost under the name of its command."""
-    assert kind.load().of(load_scene(whole / "scene.toml")) == computation_of(kind)
-    assert "done in " in (whole / "run.log").read_text(encoding="utf-8")
-    cost = json.loads((whole / "results/cost.json").read_text(encoding="utf-8"))
+    assert kind.load().of(load_scene(whole.folder / "scene.toml")) == small(kind)
+    assert "done in " in (whole.folder / "run.log").read_text(encoding="utf-8")
+    cost = json.loads((whole.folder / "results/cost.json").read_text(encoding="utf-8"))
     assert cost["command"] == kind.command
     assert cost["timings"]["total"] > 0.0 and cost["memory_MB"] > 1.0
 
 
-def test_every_picture_is_drawn_again(kind: Kind, whole: Path, tmp_path: Path) -> None:
+def test_results_are_not_replaced_unasked(kind: Kind, whole: Whole) -> None:
+    """A second call is refused, and says what to do."""
+    before = {path: path.stat().st_mtime_ns for path in whole.folder.rglob("*")}
+    with pytest.raises(FolderError, match="--resume goes on from them, --overwrite removes them and computes anew"):
+        quietly(small(kind), whole.folder)
+    assert {path: path.stat().st_mtime_ns for path in whole.folder.rglob("*")} == before
+
+
+def test_foreign_files_stay(kind: Kind, tmp_path: Path) -> None:
+    """A file of the name of a table that no call has written: refused before anything is computed, also with
+    --overwrite."""
+    table = tmp_path / kind.load().outputs.tables[0]
+    table.write_text("mine", encoding="utf-8")
+    with pytest.raises(FolderError, match=table.name):
+        quietly(small(kind), tmp_path, overwrite=True)
+    assert table.read_text(encoding="utf-8") == "mine"
+
+
+def test_every_picture_is_drawn_again(kind: Kind, whole: Whole, tmp_path: Path) -> None:
     """Of a call that is resumed for its pictures alone: `evolvent plot` draws each of them, byte by byte."""
-    out = copytree(whole, tmp_path / "out")
-    quietly(computation_of(kind, "output.pictures=true"), out, resume=True)
+    out = copytree(whole.folder, tmp_path / "out")
+    quietly(small(kind, "output.pictures=true"), out, resume=True)
     pictures = {path.name for path in (out / "pictures").iterdir()}
     assert pictures and redrawn(out, tmp_path) == pictures
 
 
-def test_folder_is_that_of_one_command(kind: Kind, whole: Path, tmp_path: Path) -> None:
-    """All tables and pictures that the computation declares are there, but those that a scene has to ask for; it leaves
-    no others."""
+def test_files_are_declared(kind: Kind, whole: Whole) -> None:
+    """The computation leaves no tables and pictures but those that it declares."""
     outputs = kind.load().outputs
-    patterns = "*.csv", "*.json", "pictures/*"
-    found = {path.relative_to(whole).as_posix() for pattern in patterns for path in whole.glob(pattern)}
-    assert outputs.tables[0] in found
-    runs = {"pictures"} if kind.command == "run" else set()
-    assert {name for name in found if name.partition("/")[0] not in runs} <= set(outputs.results)
+    found = {path.name for pattern in ("*.csv", "*.json") for path in whole.folder.glob(pattern)}
+    assert outputs.tables[0] in found and found <= set(outputs.results)
 
 
 def test_pitch_out_of_balance_is_an_error(kind: Kind, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Energy that no pitch can balance, before deflection and on deflected flanks: no table is written."""
     monkeypatch.setattr(certificates, "BALANCE_LIMIT", -1.0)
     with pytest.raises(PitchImbalance, match="wanted an energy balance within"):
-        quietly(computation_of(kind), tmp_path)
+        quietly(small(kind), tmp_path)
     assert not list(tmp_path.glob("*.csv"))
 
 

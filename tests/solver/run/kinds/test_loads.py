@@ -16,8 +16,8 @@ from evolvent.results.tables.load_table import LoadRow
 from evolvent.run.kinds.loads import Loads
 from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import SceneError, load_scene
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import spur_scene
-from tests.support.quiet import quietly
 
 SHORT = (
     "mesh.level=quick", "sweep.positions=3", "contact.friction=[0.0]", "output.pictures=false", "output.fields=false",

@@ -1,5 +1,5 @@
 """`evolvent plot` of tables that no computation has made; that it draws pictures as a command did is tested beside each
-command (`tests.support.running.redrawn`)."""
+command (`tests.support.computing.redrawn`)."""
 
 from __future__ import annotations
 

@@ -8,16 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.results.archive.run_folder import FolderError
 from evolvent.run.kinds.fatigue import Fatigue
 from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent.scene.schema.fatigue import NEEDED, FatigueSection
 from evolvent.strength.fatigue.criterion import SHALLOW
 from tests.support.checkout import ROOT
-from tests.support.quiet import quietly
-from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.redrawn import redrawn
+from tests.support.computing.quiet import quietly
 
 SETTINGS = (
     "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=8", "output.animation=false",
@@ -42,11 +39,6 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     few, apart = quietly(Fatigue.of(scene()), folder)
     assert "elements across the contact (median): below 2" in few and "sweep.positions" in apart
     return folder
-
-
-def test_plot_draws_fatigue_again(out: Path, tmp_path: Path) -> None:
-    """From the tables alone, byte by byte."""
-    assert redrawn(out, tmp_path) == {"fatigue.png"}
 
 
 def largest(out: Path, gear: str, criterion: str, place: str, friction: float) -> dict[str, str]:
@@ -144,12 +136,6 @@ def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:
         "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv", "fatigue_section.csv"]
 
 
-def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
-    """A second call says --overwrite."""
-    with pytest.raises(FolderError, match="--overwrite"):
-        quietly(Fatigue.of(scene()), out)
-
-
 @pytest.mark.parametrize(
     "setting",
     ["fatigue.depths=[0.1,0.5]", "fatigue.exponents=[5,5]", "fatigue.yield_stress_MPa=-1"],
@@ -189,16 +175,3 @@ def test_friction_reverses_at_the_pitch_point(out: Path) -> None:
     assert {row["near_friction_reversal"] for row in flank} == {"True", "False"}
     pressures = (row for row in rows(out / "fatigue.csv") if row["criterion"] == "contact_pressure")
     assert {row["near_friction_reversal"] for row in pressures} == {"False"}
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
-    """Two ranks divide gears and positions: the same values to 1e-6, and one line at the end."""
-    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
-    arguments = ["fatigue", str(out / "scene.toml"), "--out", str(tmp_path), "--set", "output.pictures=false"]
-    done = run_script("-c", code, *arguments, ranks=ranks)
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("done: ") == 1
-    ours, theirs = ([float(row["value"]) for row in rows(each / "fatigue.csv")] for each in (out, tmp_path))
-    assert theirs == pytest.approx(ours, rel=1e-6)

@@ -19,9 +19,7 @@ from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
-from tests.support.quiet import prepared_without, quietly
-from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.redrawn import redrawn
+from tests.support.computing.quiet import prepared_without, quietly
 
 GAUGE = (
     'strength.gauges.gear=["pinion"]', 'strength.gauges.side=["loaded"]', "strength.gauges.angle_deg=[45.0]",
@@ -55,16 +53,6 @@ def test_relieved_tips_that_do_not_bear_are_no_warning(tmp_path: Path) -> None:
     relieved = "pinion.tip_relief_um=60", "wheel.tip_relief_um=60", "output.error_bars=false", "output.pictures=false"
     said = quietly(Strength.of(scene("sweep.positions=4", *relieved)), tmp_path)
     assert not any("Tip-edge contact" in each or "No tip" in each for each in said)
-
-
-def test_plot_draws_root_stress_again(out: Path, tmp_path: Path) -> None:
-    """From the tables alone, byte by byte."""
-    assert redrawn(out, tmp_path) == {"root_stress.png"}
-
-
-def test_folder_has_the_scene(out: Path) -> None:
-    """scene.toml with all its defaults is the scene that was computed."""
-    assert load_scene(out / "scene.toml") == scene()
 
 
 @pytest.mark.parametrize(("gear", "paper", "b"), [("pinion", 490.6, 530.1), ("wheel", 487.01, 546.5)])
@@ -156,16 +144,6 @@ def meshed_in_vain(*_: object) -> Preparation:
     pytest.fail("meshed")
 
 
-def test_results_are_not_replaced_unasked(out: Path, tmp_path: Path) -> None:
-    """A second call is refused and says what to do; a file that no call has written stays, also with --overwrite."""
-    with pytest.raises(FolderError, match="--overwrite removes them and computes anew"):
-        quietly(Strength.of(scene()), out)
-    (tmp_path / "strength.csv").write_text("mine")
-    with pytest.raises(FolderError, match=r"strength\.csv"):
-        quietly(Strength.of(scene()), tmp_path, overwrite=True)
-    assert (tmp_path / "strength.csv").read_text() == "mine"
-
-
 @pytest.mark.parametrize(
     "setting",
     [
@@ -182,22 +160,6 @@ def test_gauges_without_their_values_are_refused() -> None:
     """Two lengths for one gauge."""
     with pytest.raises(SceneError, match=r"strength\.gauges.*2 values"):
         scene(*GAUGE, "strength.gauges.length_mm=[0.5,0.5]")
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
-    """Two ranks divide the positions: the same stresses to 1e-6, and one line at the end."""
-    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
-    arguments = ["strength", "demos/zhang2023.toml", "--out", str(tmp_path / "out")]
-    for setting in SETTINGS:
-        arguments += ["--set", setting]
-    done = run_script("-c", code, *arguments, ranks=ranks)
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("done: ") == 1
-    folders = out, tmp_path / "out"
-    one, two = (np.array([float(row["stress_MPa"]) for row in rows(each / "strength.csv")]) for each in folders)
-    assert two == pytest.approx(one, rel=1e-6)
 
 
 def test_command_line(tmp_path: Path) -> None:

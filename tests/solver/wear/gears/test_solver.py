@@ -11,9 +11,9 @@ from evolvent.results.archive.archive import Archive
 from evolvent.run.kinds.run import Run
 from evolvent.wear import Archard, BlockSettings, wear_study, wearing_pair
 from evolvent.wear.results.archive import read_checkpoint
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import spur_scene
 from tests.support.gears_api_curve import he_problem
-from tests.support.quiet import quietly
 
 WEAR = (
     "wear.cycles=4e4", "wear.pinion_mm2_per_N=1e-10", "wear.wheel_mm2_per_N=3e-10", "wear.report_at_cycles=2e4",

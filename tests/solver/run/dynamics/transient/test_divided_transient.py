@@ -14,8 +14,7 @@ from evolvent.run.dynamics.transient.kept_cases import KeptCases
 from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
-from tests.support.quiet import quietly
-from tests.support.running.processes import RunScript, on_ranks
+from tests.support.computing.quiet import quietly
 
 POSITIONS, TOLERANCE = 10, 0.008
 TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
@@ -110,22 +109,3 @@ def test_a_tolerance_that_is_not_reached_is_named(tmp_path: Path) -> None:
     assert "raise transient.most_parts or the tolerance" in beyond
     assert fact["time_steps"] == 2 * POSITIONS
     assert fact["step_error"] > 1e-6
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
-    """Two ranks take a coefficient each: the same tables to 1e-6, the same numbers of steps."""
-    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
-    words = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out")]
-    for setting in SETTINGS:
-        words += ["--set", setting]
-    done = run_script("-c", code, *words, ranks=ranks)
-    assert done.returncode == 0, done.stderr[-3000:]
-    one, two = (rows(folder / "transient.csv") for folder in (out, tmp_path / "out"))
-    assert len(one) == len(two)
-    for first, second in zip(one, two):
-        assert second == pytest.approx(first, rel=1e-6, abs=1e-6, nan_ok=True)
-    steps = "mesh_periods", "time_steps", "rejected_steps"
-    own, other = ([[fact[name] for name in steps] for fact in facts(each)] for each in (out, tmp_path / "out"))
-    assert own == other

@@ -16,9 +16,9 @@ from evolvent.run.dynamics.transient.kept_cases import KeptCases, another
 from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from tests.support.checkout import ROOT
-from tests.support.quiet import quietly
+from tests.support.computing.quiet import quietly
+from tests.support.computing.same_tables import same_tables
 from tests.support.running.processes import RunScript, on_ranks
-from tests.support.same_tables import same_tables
 
 TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
 SETTINGS = (

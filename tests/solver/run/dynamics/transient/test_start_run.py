@@ -15,9 +15,8 @@ from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
-from tests.support.quiet import quietly
-from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.redrawn import redrawn
+from tests.support.computing.quiet import quietly
+from tests.support.computing.redrawn import redrawn
 
 POSITIONS = 40
 SETTINGS = (
@@ -82,19 +81,6 @@ def test_kept_cases_have_the_start(out: Path, tmp_path: Path) -> None:
     (again / "transient.csv").unlink()
     quietly(Transient.of(scene('transient.start="rest"', "output.pictures=false")), again, resume=True)
     assert (again / "transient_start.csv").read_text() == (out / "transient_start.csv").read_text()
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: RunScript, tmp_path: Path, ranks: int) -> None:
-    """Each of two ranks takes a friction coefficient: the tables are those of one process."""
-    settings = *SETTINGS, "contact.friction=[0.0,0.1]", 'transient.start="rest"', *PLAIN
-    quietly(Transient.of(load_scene(ROOT / "demos/he2022.toml", list(settings))), tmp_path / "one")
-    words = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "two"), "--quiet"]
-    done = run_script("-c", WHOLE, *words, *(f"--set={each}" for each in settings), ranks=ranks)
-    assert done.returncode == 0, done.stderr[-3000:]
-    for one, other in zip(*(rows(tmp_path / name / "transient_start.csv") for name in ("one", "two")), strict=True):
-        assert one == pytest.approx(other, rel=1e-6, abs=1e-7, nan_ok=True)
 
 
 def test_from_statics_there_is_no_such_table(tmp_path: Path) -> None:

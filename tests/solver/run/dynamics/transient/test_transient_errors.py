@@ -20,7 +20,7 @@ from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
-from tests.support.quiet import prepared_without, quietly
+from tests.support.computing.quiet import prepared_without, quietly
 
 SETTINGS = (
     "transient.mesh_periods=200", "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",

@@ -16,14 +16,11 @@ from evolvent.dynamics.transient.certificates import Unbalanced
 from evolvent.dynamics.transient.step_balance import StepBalance, StepEnd, StepEnergies
 from evolvent.gears.solution.certificates import PitchImbalance
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.archive.run_folder import FolderError
 from evolvent.run.kinds.transient import Transient
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
-from tests.support.quiet import quietly
-from tests.support.running.processes import RunScript, on_ranks
-from tests.support.running.redrawn import redrawn
+from tests.support.computing.quiet import quietly
 
 POSITIONS = 10
 SETTINGS = (
@@ -50,11 +47,6 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert fast.startswith("2000 r/min: the pair's own vibration")
     assert "elements across the contact (median): below 2" in few
     return folder
-
-
-def test_plot_draws_the_mesh_period_again(out: Path, tmp_path: Path) -> None:
-    """From the tables alone, byte by byte."""
-    assert redrawn(out, tmp_path) == {"transient.png"}
 
 
 def test_tables_have_every_speed_and_coefficient(out: Path) -> None:
@@ -156,12 +148,6 @@ def test_statics_out_of_balance_end_the_run(tmp_path: Path, monkeypatch: pytest.
     assert not list(tmp_path.glob("*.csv"))
 
 
-def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
-    """A second call names --resume and --overwrite."""
-    with pytest.raises(FolderError, match="--resume goes on from them, --overwrite removes them"):
-        quietly(Transient.of(scene()), out)
-
-
 def test_a_motion_that_does_not_repeat_yet_is_named(tmp_path: Path) -> None:
     """Two mesh periods of a lightly damped pair from statics are not enough."""
     few = scene("transient.speeds_rpm=[2000]", "contact.friction=0", "transient.mesh_periods=2",
@@ -186,24 +172,6 @@ def test_scenes_that_cannot_be_computed(tmp_path: Path) -> None:
         quietly(Transient.of(bare), tmp_path)
     with pytest.raises(SceneError, match=r"sweep\.positions"):
         quietly(Transient.of(scene("sweep.positions=2")), tmp_path)
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same(run_script: RunScript, out: Path, tmp_path: Path, ranks: int) -> None:
-    """Two ranks divide speeds and coefficients: the same tables to 1e-6, and one line at the end."""
-    code = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
-    arguments = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--set", "output.pictures=false",
-                 "--set", "output.animation=false"]
-    for setting in SETTINGS:
-        arguments += ["--set", setting]
-    done = run_script("-c", code, *arguments, ranks=ranks)
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("done: ") == 1
-    one, two = (rows(folder / "transient.csv") for folder in (out, tmp_path / "out"))
-    assert len(one) == len(two)
-    for first, second in zip(one, two):
-        assert list(second.values()) == pytest.approx(list(first.values()), rel=1e-6, abs=1e-6)
 
 
 def test_command_line_without_a_speed_ends_with_status_2(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -100,7 +100,7 @@ def test_cost_of_the_companion_is_kept_with_the_error_bars(tmp_path: Path, monke
 
     command = ["run", *HE, "--out", str(tmp_path)]
     with monkeypatch.context() as patch:
-        patch.setattr("evolvent.run.output.write_tables", stopped)
+        patch.setattr("evolvent.run.kinds.run.write_tables", stopped)
         assert main(command) == Exit.FAILED
     spent = read_cost(RunFolder(tmp_path)).timings
     assert spent.error_bars > 0.0

@@ -19,7 +19,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from evolvent.run.context import peak_memory_MB
 from mpi4py import MPI
 
 from evidence.benchmarks.gears.three_teeth import FRICTION, pair_scene
@@ -33,6 +32,7 @@ from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.meshing.sector_sizes import one_mesh_sizes
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state
+from evolvent.run.call import peak_memory_MB
 from evolvent.run.kept_pitch import pitch_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene

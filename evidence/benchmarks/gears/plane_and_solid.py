@@ -17,7 +17,6 @@ from functools import cache
 from math import nan
 
 import numpy as np
-from evolvent.run.context import peak_memory_MB
 
 from evidence.scenes import spur_pair
 from evolvent.fem.backend import dolfinx_compat
@@ -26,6 +25,7 @@ from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.run.call import peak_memory_MB
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member

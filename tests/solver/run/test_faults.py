@@ -18,7 +18,7 @@ from evidence.robustness.faults import Struck, arguments, differs, run, struck_a
 from evolvent.results.archive.store import read_arrays
 from tests.support.running.processes import BROKEN_RUN, RunScript
 
-STEP, LAST = 20, 640  # kB; the run with its companion takes 610, a position and the flanks in contact no less than a step
+STEP, LAST = 20, 640  # kB; a run with its companion takes 610, a position and the flanks no less than a step
 
 
 @pytest.fixture(scope="module")

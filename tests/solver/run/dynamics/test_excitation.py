@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -109,7 +111,7 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
     def refuse(*_: object) -> None:
         raise MeshError("too coarse")
 
-    monkeypatch.setattr(excitation, "companion_mesh", refuse)
+    monkeypatch.setattr(excitation, "COMPANION", replace(COMPANION, mesh=refuse))
     loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS[:1])
     (said,) = quietly(Excitation.under(loads), tmp_path)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
@@ -120,7 +122,7 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
 def test_results_are_not_replaced_unasked(out: Path) -> None:
     """A second call is refused before anything is computed, and says what to do."""
     loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
-    with pytest.raises(FolderError, match="remedy: --resume goes on from its positions, --overwrite"):
+    with pytest.raises(FolderError, match="remedy: --resume goes on from them, --overwrite"):
         quietly(Excitation.under(loads), out)
 
 
@@ -143,15 +145,15 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(KeptPositions, "write", killed)
     with pytest.raises(Killed):
         quietly(Excitation.under(loads), tmp_path)
-    with pytest.raises(FolderError, match=r"found results/excitation\.npz of an earlier call"):
+    with pytest.raises(FolderError, match=r"found the results of an earlier call \(results/excitation\.npz\)"):
         quietly(Excitation.under(loads), tmp_path)
     assert quietly(Excitation.under(loads), tmp_path, resume=True) == []
     assert counts == [1, 2, 3, 4, 5, 6]
     for name in ("transmission_error_um", "tangent_stiffness_N_per_um"):
         whole, resumed = (column(rows(folder / "excitation.csv"), name) for folder in (out, tmp_path))
         assert resumed == pytest.approx(whole, rel=1e-8)
-    monkeypatch.setattr(excitation, "prepare_model", None)
-    assert quietly(Excitation.under(loads), tmp_path, resume=True) == []
+    prepare: Any = None  # nothing calls it
+    assert quietly(Excitation.under(loads), tmp_path, resume=True, prepare=prepare) == []
     with pytest.raises(ArchiveError, match="found those of other gears, meshes, torques or positions"):
         quietly(Excitation.under(scene_torques(spur_scene(*SETTINGS), PERCENTS[:1])), tmp_path, resume=True)
 

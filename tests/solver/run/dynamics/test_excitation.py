@@ -23,7 +23,7 @@ from evolvent.run.kept_pitch import COMPANION
 from evolvent.run.kinds.excitation import Excitation
 from evolvent.scene.scene import SceneError
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.mesh.mesh_data import MeshError
+from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from tests.support.gear_cases import model_of, spur_scene, swept
 from tests.support.quiet import quietly
 from tests.support.running.processes import RunScript, on_ranks
@@ -108,7 +108,7 @@ def test_error_bars_come_from_a_coarse_companion(out: Path, tmp_path: Path) -> N
 def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Tables as without, and a sentence with the reason."""
 
-    def refuse(*_: object) -> None:
+    def refuse(*_: object) -> MeshData:
         raise MeshError("too coarse")
 
     monkeypatch.setattr(excitation, "COMPANION", replace(COMPANION, mesh=refuse))

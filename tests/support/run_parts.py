@@ -9,7 +9,7 @@ import numpy as np
 
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.results.archive.archive import Archive
-from evolvent.results.archive.run_cost import Timings
+from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.results.archive.run_folder import MANIFEST
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.run_data import RunData
@@ -28,6 +28,7 @@ def store(run: RunData, folder: Path) -> None:
     """Archives a run as a real one would be."""
     archive = Archive(folder, run.scene)
     archive.write_gears(run.shapes)
+    write_cost(archive.files, Cost(command=archive.command))
     (folder / "scene.toml").write_text(run.scene.resolved_toml(), encoding="utf-8")
     results = [tuple(solved.result for solved in each) for each in run.positions]
     state = SweepState((0.0, 0.0), tuple(None for _ in run.frictions))

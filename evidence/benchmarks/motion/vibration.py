@@ -1,6 +1,6 @@
 """The cost of a pair's excitation and of its vibration over the speed: CPU seconds of one process with one thread.
 
-Without the start of Python and without error bars; their coarse companion adds what `run.coarse_run` says. What the
+Without the start of Python and without error bars, whose coarse companion is solved in addition. What the
 ratio of the blocks divides is measured twice in turn, and the lesser seconds count; the helical pair, which takes
 minutes, once.
 """

@@ -74,7 +74,7 @@ def test_transient_has_its_statics_on_deflected_flanks(bent: Path, tmp_path: Pat
 def test_strength_has_its_roots_on_deflected_flanks(bent: Path, tmp_path: Path) -> None:
     """Root stress at uniform and further positions, and the scene that is written."""
     found, asked = tmp_path / "found", tmp_path / "asked"
-    assert quietly(Strength.of(scene(bent)), found)[0] == ON_DEFLECTED
+    assert ON_DEFLECTED in quietly(Strength.of(scene(bent)), found)
     assert ON_DEFLECTED not in quietly(Strength.of(scene(bent, ASKED)), asked)
     same(asked, found, "strength.csv", "root_stress.csv", "scene.toml")
 

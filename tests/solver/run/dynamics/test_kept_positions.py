@@ -1,4 +1,4 @@
-"""Positions of an excitation on disk that something else has written there."""
+"""Positions of an excitation on disk: those that something else has written there, and a vibration resumed on them."""
 
 from __future__ import annotations
 
@@ -8,10 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.support.quiet import quietly
 
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Store, arrays_bytes
 from evolvent.run.dynamics.kept_positions import NAMES, KeptPositions, another
+from evolvent.run.kinds import dynamics
+from evolvent.run.kinds.dynamics import TABLES, Dynamics
+from evolvent.scene.scene import load_scene
+from tests.support.gear_cases import spur_scene
 
 
 def single_array() -> bytes:
@@ -58,3 +63,35 @@ def test_forged_positions_are_refused(tmp_path: Path, content: bytes) -> None:
     RunFolder(tmp_path).write(NAMES[""], content)
     with pytest.raises(ArchiveError, match=r"excitation\.npz: wanted"):
         kept(tmp_path).read()
+
+
+class Stopped(Exception):
+    """A call ends here."""
+
+
+def test_tables_of_another_scene_are_removed_before_it_is_solved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """He's pair under two torques, resumed and stopped before its vibration is there: with the same damping all tables
+    stay; with another one, whose scene is written, none does."""
+    small = (
+        "mesh.level=quick", "sweep.positions=4", "dynamics.torque_percents=[50,100]", "dynamics.speeds=3",
+        "dynamics.backlash_um=50",
+    )
+    tables = {table.name for table in TABLES}
+
+    def stopped(*_: object) -> None:
+        raise Stopped
+
+    def left(damping: float) -> set[str]:
+        with pytest.raises(Stopped):
+            quietly(Dynamics.of(spur_scene(*small, f"dynamics.damping_ratio={damping}")), tmp_path, resume=True)
+        section = load_scene(tmp_path / "scene.toml").dynamics
+        assert section is not None and section.damping_ratio == damping
+        return {path.name for path in tmp_path.iterdir()} & tables
+
+    quietly(Dynamics.of(spur_scene(*small, "dynamics.damping_ratio=0.1")), tmp_path)
+    monkeypatch.setattr(dynamics, "swept_vibration", stopped)
+    whole = left(0.1)
+    assert {"response.csv", "excitation.csv"} <= whole
+    assert left(0.2) == set()

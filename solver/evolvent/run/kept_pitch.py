@@ -44,7 +44,7 @@ class Meshes:
     @property
     def stage(self) -> str:
         """Stage of the positions in the progress display."""
-        return ERROR_BARS if self.part else POSITIONS
+        return ERROR_BARS if self.part.startswith(COARSE) else POSITIONS
 
 
 OWN = Meshes()

@@ -125,7 +125,7 @@ CATALOGUE: Mapping[str, list[Figure]] = {
     "check": _of_check(), "run": _of_run(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
     "transient": _of_transient(), "strength": _of_strength(), "fatigue": _of_fatigue(), "wear": _of_wear(),
 }
-"""Computation -> named figures that its scenes have."""
+"""Computation -> named figures that its scenes have; others have those of [[figure]] alone."""
 DEFAULTS: Mapping[str, tuple[str, ...]] = {
     "check": ("transverse_contact_ratio", "total_contact_ratio", "pitch_point_pressure_MPa", "pinion_tip_thickness_mm",
               "wheel_tip_thickness_mm"),
@@ -150,15 +150,15 @@ def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
     """
     own = [Figure(**each.model_dump()) for each in study.figure]
     _require_own_columns(own, study, source)
-    known = {each.name: each for each in [*CATALOGUE[study.compute], *own]}
-    names = study.figures or (*DEFAULTS[study.compute], *(each.name for each in own))
+    known = {each.name: each for each in [*CATALOGUE.get(study.compute, []), *own]}
+    names = study.figures or (*DEFAULTS.get(study.compute, ()), *(each.name for each in own))
     for name in names:
         if name not in known:
             meant = nearest_key(name, known)
             allowed = f'figures of "{study.compute}" (docs/studies.md), or names of [[figure]]'
             remedy = f"did you mean {meant}?" if meant else f"take some of {', '.join(known)}"
             raise SceneError([InputProblem("figures", f"{name!r}, an unknown figure", allowed, remedy)], source)
-        if list(names).count(name) > 1 or sum(each.name == name for each in [*CATALOGUE[study.compute], *own]) > 1:
+        if list(names).count(name) > 1 or sum(each.name == name for each in [*CATALOGUE.get(study.compute, []), *own]) > 1:
             remedy = "name each figure once, and other figures otherwise"
             raise SceneError([InputProblem("figures", f"{name!r} twice", "different names", remedy)], source)
     return [known[name] for name in names]
@@ -167,7 +167,7 @@ def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
 def _require_own_columns(own: Sequence[Figure], study: StudyFile, source: str) -> None:
     """Raises SceneError where a [[figure]] has the name of another column of the table."""
     parameters = [key for keys in study.parts().values() for key in keys]
-    errors = [f"{each.name}{ERROR}" for each in CATALOGUE[study.compute] if each.error]
+    errors = [f"{each.name}{ERROR}" for each in CATALOGUE.get(study.compute, []) if each.error]
     for number, figure in enumerate(own):
         if figure.name in (*OWN, *parameters, *errors):
             allowed = f"a name of its own: the table has {', '.join(OWN)}, parameters and error bars"

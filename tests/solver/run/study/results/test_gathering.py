@@ -114,6 +114,7 @@ def test_forged_tables_have_no_figures(tmp_path: Path, content: str, statistic: 
 
 def test_defaults_are_in_the_catalogue() -> None:
     """Each computation gathers figures that have a name, each name once."""
-    for compute in COMPUTATIONS:
+    assert CATALOGUE.keys() == DEFAULTS.keys() <= set(COMPUTATIONS)
+    for compute in CATALOGUE:
         names = [figure.name for figure in CATALOGUE[compute]]
         assert len(set(names)) == len(names) and set(DEFAULTS[compute]) <= set(names)

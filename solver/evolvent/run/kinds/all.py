@@ -69,6 +69,15 @@ mpirun -n 2 evolvent loads demos/yang2022.toml --out out/loads --percent 25,50,1
         folder="For a folder of each load.", percents=(5.0, 10.0, 25.0, 50.0, 75.0, 100.0), in_studies=False,
     ),
     Kind(
+        "losses", "losses:Losses", """Compute the friction loss of a pair over the torque.
+
+    In percent of the input, and as a power, at every friction coefficient. The coefficient is the same at all speeds.
+    """, """\
+evolvent losses demos/yang2022.toml --out out/losses --level quick --set contact.friction=[0.05,0.1]
+mpirun -n 2 evolvent losses demos/he2022.toml --out out/losses --percent 25,50,100 --set contact.friction=0.06""",
+        percents=(10.0, 25.0, 50.0, 75.0, 100.0),
+    ),
+    Kind(
         "excitation", "excitation:Excitation", """Compute what a pair's mesh does to its vibration.
 
     Without friction, over one angular pitch: the unloaded transmission error, and under each of a list of torques the

@@ -37,8 +37,8 @@ def figures() -> str:
     """A line a computation: figures with a name, those that are gathered by default in bold."""
     rows = []
     for compute in COMPUTATIONS:
-        names = (each.name for each in CATALOGUE[compute])
-        words = ", ".join(f"**`{name}`**" if name in DEFAULTS[compute] else f"`{name}`" for name in names)
+        names = (each.name for each in CATALOGUE.get(compute, []))
+        words = ", ".join(f"**`{name}`**" if name in DEFAULTS.get(compute, ()) else f"`{name}`" for name in names)
         rows.append((f"`{compute}`", words))
     return markdown(("`compute`", "figures"), rows)
 

@@ -42,6 +42,11 @@ def _of_run() -> list[Figure]:
     return [*own, *(Figure(name, SUMMARY, name, "frictions") for name in ("kink_pressure_MPa", "balance_error"))]
 
 
+def _of_losses() -> list[Figure]:
+    names = "loss_percent", "loss_W_at_1000_rpm"
+    return [Figure(f"largest_{name}", "losses.csv", name, statistic="max", error=f"{name}{ERROR}") for name in names]
+
+
 def _of_excitation() -> list[Figure]:
     def of(name: str, quantity: str, column: str) -> Figure:
         where: dict[str, str | int | float] = {"quantity": quantity, "harmonic": 1}
@@ -122,7 +127,7 @@ def _of_wear() -> list[Figure]:
 
 
 CATALOGUE: Mapping[str, list[Figure]] = {
-    "check": _of_check(), "run": _of_run(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
+    "check": _of_check(), "run": _of_run(), "losses": _of_losses(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
     "transient": _of_transient(), "strength": _of_strength(), "fatigue": _of_fatigue(), "wear": _of_wear(),
 }
 """Computation -> named figures that its scenes have; others have those of [[figure]] alone."""
@@ -131,6 +136,7 @@ DEFAULTS: Mapping[str, tuple[str, ...]] = {
               "wheel_tip_thickness_mm"),
     "run": ("transmission_error_peak_to_peak_um", "max_pressure_MPa", "mesh_stiffness_N_per_mm_um", "loss_percent",
             "face_load_factor"),
+    "losses": ("largest_loss_percent",),
     "excitation": ("transmission_error_peak_to_peak_um", "tangent_stiffness_mean_N_per_um"),
     "dynamics": ("largest_dynamic_factor", "largest_equivalent_amplitude_um", "natural_speed_rpm"),
     "strength": tuple(f"{gear}_{name}_MPa" for gear in ("pinion", "wheel") for name in ("tension", "compression",
@@ -150,7 +156,8 @@ def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
     """
     own = [Figure(**each.model_dump()) for each in study.figure]
     _require_own_columns(own, study, source)
-    known = {each.name: each for each in [*CATALOGUE.get(study.compute, []), *own]}
+    every = [*CATALOGUE.get(study.compute, []), *own]
+    known = {each.name: each for each in every}
     names = study.figures or (*DEFAULTS.get(study.compute, ()), *(each.name for each in own))
     for name in names:
         if name not in known:
@@ -158,7 +165,7 @@ def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
             allowed = f'figures of "{study.compute}" (docs/studies.md), or names of [[figure]]'
             remedy = f"did you mean {meant}?" if meant else f"take some of {', '.join(known)}"
             raise SceneError([InputProblem("figures", f"{name!r}, an unknown figure", allowed, remedy)], source)
-        if list(names).count(name) > 1 or sum(each.name == name for each in [*CATALOGUE.get(study.compute, []), *own]) > 1:
+        if list(names).count(name) > 1 or [each.name for each in every].count(name) > 1:
             remedy = "name each figure once, and other figures otherwise"
             raise SceneError([InputProblem("figures", f"{name!r} twice", "different names", remedy)], source)
     return [known[name] for name in names]

@@ -6,7 +6,7 @@ UNITS = {
     "_N_per_mm_um": "N/(mm·µm)", "_N_per_um": "N/µm", "_N_s_per_mm": "N·s/mm", "_mm2_per_N": "mm²/N",
     "_mm_per_rad": "mm/rad", "_mm_per_s": "mm/s", "_kg_m2": "kg·m²", "_kg": "kg", "_rpm": "r/min", "_Nm": "N·m",
     "_N": "N", "_MPa": "MPa", "_GPa": "GPa", "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%",
-    "_MB": "MB", "_Hz": "Hz", "_ms": "ms", "_s": "s",
+    "_MB": "MB", "_W": "W", "_Hz": "Hz", "_ms": "ms", "_s": "s",
 }
 """Ending of a name -> unit."""
 

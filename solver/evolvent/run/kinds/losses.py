@@ -43,10 +43,10 @@ class LossRow:
     """Friction work over the input work of the pitch."""
     loss_percent_error: float
     """Estimated error of the loss."""
-    loss_W_at_1000_rpm: float
+    loss_at_1000_rpm_W: float
     """Friction power at 1000 r/min of the pinion. As μ is the same at all speeds, so is the loss in percent, and the
     power is in proportion to the speed."""
-    loss_W_at_1000_rpm_error: float
+    loss_at_1000_rpm_W_error: float
     """Estimated error of the friction power."""
 
 
@@ -132,7 +132,7 @@ def losses_picture(rows: Sequence[LossRow]) -> bytes:
         where = f"at {most.torque_Nm:.4g} N·m and μ = {most.friction:g}"
         figure = sheet("Friction loss over the torque", f"At most {most.loss_percent:.3g} % of the input, {where}")
         for axes, name, label in zip(
-            figure.subplots(1, 2), ("loss_percent", "loss_W_at_1000_rpm"),
+            figure.subplots(1, 2), ("loss_percent", "loss_at_1000_rpm_W"),
             ("loss over input [%]", f"friction power at {SPEED:g} r/min [W]"),
         ):
             for friction, colour in zip(frictions, friction_colours(frictions)):

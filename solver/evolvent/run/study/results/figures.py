@@ -43,7 +43,7 @@ def _of_run() -> list[Figure]:
 
 
 def _of_losses() -> list[Figure]:
-    names = "loss_percent", "loss_W_at_1000_rpm"
+    names = "loss_percent", "loss_at_1000_rpm_W"
     return [Figure(f"largest_{name}", "losses.csv", name, statistic="max", error=f"{name}{ERROR}") for name in names]
 
 
@@ -127,8 +127,9 @@ def _of_wear() -> list[Figure]:
 
 
 CATALOGUE: Mapping[str, list[Figure]] = {
-    "check": _of_check(), "run": _of_run(), "losses": _of_losses(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
-    "transient": _of_transient(), "strength": _of_strength(), "fatigue": _of_fatigue(), "wear": _of_wear(),
+    "check": _of_check(), "run": _of_run(), "losses": _of_losses(), "excitation": _of_excitation(),
+    "dynamics": _of_dynamics(), "transient": _of_transient(), "strength": _of_strength(), "fatigue": _of_fatigue(),
+    "wear": _of_wear(),
 }
 """Computation -> named figures that its scenes have; others have those of [[figure]] alone."""
 DEFAULTS: Mapping[str, tuple[str, ...]] = {

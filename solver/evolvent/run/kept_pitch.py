@@ -19,8 +19,10 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, i
 from evolvent.results.archive.archive import COARSE, Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
+from evolvent.results.error_bars.estimation import Companion
 from evolvent.results.run_data import RunData, run_data
 from evolvent.run.call import Call
+from evolvent.run.companion import Attempt
 from evolvent.run.progress import ERROR_BARS, POSITIONS
 from evolvent.scene.gear_problem import gear_options, gear_problem, shares_gears
 from evolvent.scene.scene import Scene
@@ -75,6 +77,11 @@ class KeptPitch:
     def run_data(self) -> RunData:
         """The pitch with its figures. On rank 0 alone. Raises ArchiveError."""
         return run_data(self.scene, self.archive.read_gears(), self.archive.read_positions(self.scene.gear_pair()))
+
+
+def companion_of(coarse: Attempt[KeptPitch]) -> Companion:
+    """The coarse companion of a run with its figures. On rank 0 alone. Raises ArchiveError."""
+    return Companion(None if coarse.value is None else coarse.value.run_data(), coarse.reason, coarse.seconds)
 
 
 @dataclass(frozen=True)

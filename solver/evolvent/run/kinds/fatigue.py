@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from evolvent.gears.pressure.contact_cells import coarse_contact
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
-from evolvent.results.error_bars.estimation import Companion, estimated_errors
+from evolvent.results.error_bars.estimation import estimated_errors
 from evolvent.results.mesh_facts import cells_across
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
@@ -17,7 +17,7 @@ from evolvent.results.tables.run_warnings import about_spacing
 from evolvent.run.call import Call
 from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
-from evolvent.run.kept_pitch import COMPANION, STORED, KeptPitch, kept_pitch
+from evolvent.run.kept_pitch import COMPANION, STORED, KeptPitch, companion_of, kept_pitch
 from evolvent.run.strength.fatigue_lines import fatigue_lines
 from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.schema.fatigue import FatigueSection
@@ -60,10 +60,9 @@ class Fatigue(Computation[SolvedPitches]):
 
     def results(self, call: Call, solved: SolvedPitches) -> Results:
         """Tables of the criteria, and warnings where figures do not hold."""
-        run, coarse = solved.fine.run_data(), solved.coarse.value
-        beside = None if coarse is None else coarse.run_data()
+        run, companion = solved.fine.run_data(), companion_of(solved.coarse)
+        beside = companion.run
         if wanted_output(self.scene).error_bars:
-            companion = Companion(beside, solved.coarse.reason, solved.coarse.seconds)
             run = replace(run, errors=estimated_errors(run, companion))
         found = [_fatigue(run, k, run.errors.bar("max_pressure_MPa", k), beside) for k in range(len(run.frictions))]
         facts = [

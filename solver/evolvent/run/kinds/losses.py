@@ -12,14 +12,14 @@ from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.archive.archive import COARSE
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.results.error_bars.estimation import Companion, estimated_errors
+from evolvent.results.error_bars.estimation import estimated_errors
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.table import Table
 from evolvent.run.call import Call
 from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
-from evolvent.run.kept_pitch import KeptPitch, Meshes, kept_pitch
+from evolvent.run.kept_pitch import KeptPitch, Meshes, companion_of, kept_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
 from evolvent.scene.scene import Scene
@@ -65,9 +65,8 @@ class SolvedLoad:
 
     def run(self) -> RunData:
         """The pitch with its figures and error bars. On rank 0 alone."""
-        run, coarse = self.fine.run_data(), self.coarse
-        companion = Companion(None if coarse.value is None else coarse.value.run_data(), coarse.reason, coarse.seconds)
-        return replace(run, errors=estimated_errors(run, companion))
+        run = self.fine.run_data()
+        return replace(run, errors=estimated_errors(run, companion_of(self.coarse)))
 
 
 @dataclass(frozen=True)

@@ -23,16 +23,17 @@ from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings
 from evolvent.results.drawing.picture_files import Picture
 from evolvent.results.drawing.table_pictures import from_tables
-from evolvent.results.error_bars.estimation import Companion, with_errors
+from evolvent.results.error_bars.estimation import with_errors
 from evolvent.results.fields.deformation import Deformation, deformation_of
 from evolvent.results.run_data import RunData, read_run, run_data
 from evolvent.results.tables.summary_rows import Summary
 from evolvent.results.tables.table import Filled
 from evolvent.results.tables.tables import summary, write_summary, write_tables
 from evolvent.run.call import Call
+from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.dynamics.bodies import elastic_point
-from evolvent.run.kept_pitch import COMPANION, STORED, kept_pitch
+from evolvent.run.kept_pitch import COMPANION, STORED, KeptPitch, companion_of, kept_pitch
 from evolvent.run.output import facts_of, last_lines, write_fields_of
 from evolvent.run.progress import DEFORMATION, VIBRATION
 from evolvent.scene.gear_problem import gear_problem
@@ -59,8 +60,8 @@ class SolvedRun:
     """Meshes that the positions were solved on."""
     timings: Timings
     """Wall time of the positions and of the companion [s]."""
-    companion: Companion | None = None
-    """Coarse companion; None where the scene asks for no error bars, or where they are stored."""
+    coarse: Attempt[KeptPitch] | None = None
+    """Pitch of the coarse companion; None where the scene asks for no error bars, or where they are stored."""
     deformation: Deformation | None = None
     """Displacement and stress of the teeth in contact; None where the scene does not ask for them."""
     operation: Operation | None = None
@@ -111,13 +112,11 @@ class Run(Computation[SolvedRun]):
         known = call.on_first(lambda: read_error_bars(solved.archive) is not None)
         if wanted_output(self.scene).error_bars and not known:
             again = call.companion(solved.scene, lambda: kept_pitch(call, solved.scene, COMPANION))
-            data = None if again.value is None else call.on_first(again.value.run_data)
-            timings = replace(solved.timings, error_bars=again.seconds)
-            solved = replace(solved, timings=timings, companion=Companion(data, again.reason, again.seconds))
+            solved = replace(solved, timings=replace(solved.timings, error_bars=again.seconds), coarse=again)
         if wanted_output(self.scene).deformation:
             call.progress.stage(DEFORMATION)
             solved = replace(solved, deformation=deformation_of(solved.scene, solved.archive, call.comm))
-        if not solved.timings.total and solved.companion is None and solved.deformation is None:
+        if not solved.timings.total and solved.coarse is None and solved.deformation is None:
             call.log.info("%s", NOTHING_LEFT)
             call.progress.note(NOTHING_LEFT)
         operation = None if vibrating is None else vibrating.operation
@@ -127,7 +126,7 @@ class Run(Computation[SolvedRun]):
         """Tables and pictures of the positions, and of the mesh force where the pair vibrates."""
         scene, archive = solved.scene, solved.archive
         data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
-        data = with_errors(data, archive, solved.companion)
+        data = with_errors(data, archive, None if solved.coarse is None else companion_of(solved.coarse))
         mended = [ON_DEFLECTED] if scene.exact != self.scene.exact else []
         cost = call.cost(replace(solved.timings, total=call.seconds), solved.memory_MB)
         content = summary(data, facts_of(data, solved.meshes, call.comm.size, cost), mended)

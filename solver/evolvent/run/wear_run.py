@@ -49,12 +49,11 @@ def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tu
     assert wear is not None
     kept = call.on_first(lambda: read_checkpoint(archive) if call.resume else None)
     if kept is not None:
+        call.log.info("resumed after %.6g of %.6g cycles", kept.cycles, wear.cycles)
         if kept.cycles >= wear.cycles:
             meshes = call.on_first(lambda: _checked_meshes(scene, archive))
             call.on_first(lambda: call.begin(scene, resumed=True))
-            call.log.info("resumed after all of %.6g cycles", kept.cycles)
             return meshes, Timings()
-        call.log.info("resumed after %.6g of %.6g cycles", kept.cycles, wear.cycles)
     preparation = call.gears(gear_problem(scene))
     if kept is not None:
         call.on_first(lambda: call.begin(scene, resumed=True))

@@ -119,14 +119,15 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.transient": (
         "meshes", "meshes.gears", "fem.parallel", "contact.newton", "contact.transient.time_schemes", "gears.problem",
-        "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics.excitation", "dynamics", "dynamics.modes",
+        "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics.oscillator", "dynamics.excitation", "dynamics",
+        "dynamics.modes",
     ),
     "dynamics.results": (
         "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.error_bars",
         "results.tables", "gears.problem",
     ),
     "dynamics.results.transient": (
-        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient",
+        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics.oscillator", "dynamics", "dynamics.transient",
         "results.error_bars", "results.tables", "dynamics.results",
     ),
     "dynamics.figures": (
@@ -148,7 +149,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "check": (
         "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears.problem", "gears.meshing",
-        "gears.pressure", "dynamics", "strength.fatigue", "scene", "scene.schema",
+        "gears.pressure", "dynamics.oscillator", "dynamics", "strength.fatigue", "scene", "scene.schema",
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
@@ -165,8 +166,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.dynamics.transient": (
         "meshes", "meshes.gears", "fem.parallel", "contact.transient.time_schemes", "gears.problem",
-        "gears.meshing", "gears.sweep", "scene.schema", "scene", "results.archive", "results.tables", "dynamics",
-        "dynamics.modes", "dynamics.transient", "dynamics.results.transient", "check", "run",
+        "gears.meshing", "gears.sweep", "scene.schema", "scene", "results.archive", "results.tables",
+        "dynamics.oscillator", "dynamics", "dynamics.modes", "dynamics.transient", "dynamics.results.transient",
+        "check", "run",
     ),
     "run.kinds": (
         "meshes.mesh", "meshes.gears", "fem.parallel", "gears", "gears.meshing", "gears.pressure",

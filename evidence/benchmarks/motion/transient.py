@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import nan, pi
+from math import nan
 
 from mpi4py import MPI
 
@@ -13,6 +13,7 @@ from evidence.benchmarks.motion.motion_row import MotionRow
 from evidence.checkout import DEMOS
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.of_scene import drive_settings
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.transient.driven_pair import driven_pair, loaded_as_static, resolved_modes
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.pair_transient import PairTransient
@@ -99,15 +100,15 @@ def _steady(scene: Scene, model: GearModel, static: list[PositionResult]) -> tup
     assert section is not None
     (speed,) = section.speeds_rpm
     problem, positions = gear_problem(scene), scene.sweep.positions
-    sampled = speed / 60.0 * model.pair.pinion.z * positions
+    turning = MeshSpeed(speed, model.pair.pinion.z)
+    sampled = turning.mesh_frequency * positions
     modes = resolved_modes(problem, model, dynamics.density_kg_m3, sampled, section.modes_per_harmonic)
     settings = drive_settings(problem.pair, dynamics)
     pair = loaded_as_static(driven_pair(model, modes, settings, static, section.mode_damping_ratio, False), static)
     contacts = KeptContacts(pair, positions, model.bodies[0].d if any(frictions) else 1)
     (start,) = quasi_static_starts(pair, contacts.step_angle, frictions)
     begin = time.process_time()
-    scheme, omega = TimeScheme(section.spectral_radius), 2.0 * pi * speed / 60.0
-    transient = PairTransient(pair, frictions[0], omega, scheme, contacts)
+    transient = PairTransient(pair, frictions[0], turning, TimeScheme(section.spectral_radius), contacts)
     motion = until_steady(transient, start.at(transient.time_step), section.mesh_periods, section.steady_change)
     return motion, (time.process_time() - begin) / len(motion.errors)
 

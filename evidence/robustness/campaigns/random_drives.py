@@ -17,7 +17,7 @@ from evidence.robustness.campaigns.random_scenes import Draw, random_scene
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, paper_law
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.oscillator.mesh_law import stepped_side
-from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods
+from evolvent.dynamics.oscillator.mesh_speed import speeds_to_periods
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.gears.problem.gear_inertia import equivalent_mass, polar_moment
@@ -150,7 +150,7 @@ def _excitation(springs: _ToothPairs, load: float, phases: Floats, error: Floats
     error = error - error.min() + MARGIN * np.ptp(error)
     forces = load * PERCENTS / 100.0
     both = np.array([[springs.under(float(force), i) for force in forces] for i in range(len(phases))])
-    loaded = LoadedMesh(2.0 * np.pi * phases, forces, both[..., 0] + error[:, None], both[..., 1])
+    loaded = LoadedMesh(2.0 * np.pi * phases, forces, 1.0, both[..., 0] + error[:, None], both[..., 1])
     return MeshExcitation(springs.gaps.min(axis=1) + error, loaded)
 
 

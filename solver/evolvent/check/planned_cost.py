@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from evolvent.dynamics.mode_count import expected_modes
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
@@ -51,7 +52,8 @@ def natural_modes(scene: Scene, section: TransientSection) -> tuple[float, ...]:
     problem, density = gear_problem(scene), (scene.dynamics or DynamicsSection()).density_kg_m3
     if section.modes_per_harmonic is not None:
         return tuple(float(section.modes_per_harmonic * gear.z) for gear in problem.pair.gears)
-    highest = RESOLVED * max(section.speeds_rpm) / 60.0 * problem.pair.pinion.z * scene.sweep.positions
+    fastest = MeshSpeed(max(section.speeds_rpm), problem.pair.pinion.z)
+    highest = RESOLVED * fastest.mesh_frequency * scene.sweep.positions
     elastic = ((each.youngs_modulus, each.poissons_ratio) for each in problem.materials)
     return tuple(
         max(expected_modes(gear, each, density, highest, problem.is_plane), gear.z)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from evolvent.check.planned_cost import most_time_steps, natural_modes, too_many_modes
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.resolved_vibration import unresolved
 from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -28,10 +29,8 @@ BY_ISO = "by c_γα of ISO 6336-1"
 class PlannedSteps:
     """Time steps of a transient at one speed."""
 
-    speed: float
-    """Speed of the pinion [r/min]."""
-    mesh_frequency: float
-    """Mesh frequency f_z [Hz]."""
+    speed: MeshSpeed
+    """Speed of the pinion."""
     length: float
     """Length of an undivided time step [s]."""
     a_period: float
@@ -61,8 +60,8 @@ def transient_lines(scene: Scene, section: TransientSection, companion: bool) ->
 def step_lines(scene: Scene, section: TransientSection) -> list[Line]:
     """Lines on the time steps, one for each speed."""
     return [
-        (f"{each.speed:g} r/min", "", "", (
-            f"{each.mesh_frequency:.4g}", f"{1e6 * each.length:.4g}", f"{each.a_period:.3g}"))
+        (f"{each.speed.rpm:g} r/min", "", "", (
+            f"{each.speed.mesh_frequency:.4g}", f"{1e6 * each.length:.4g}", f"{each.a_period:.3g}"))
         for each in planned_steps(scene, section)
     ]
 
@@ -80,7 +79,7 @@ def transient_warnings(scene: Scene) -> list[str]:
         return found
     natural, count = natural_frequency(scene, section), scene.sweep.positions
     radius = section.spectral_radius
-    said = [unresolved(each.speed, natural, each.a_period, count, radius) for each in planned_steps(scene, section)]
+    said = [unresolved(each.speed.rpm, natural, each.a_period, count, radius) for each in planned_steps(scene, section)]
     return found + [f"{each} (natural frequency {BY_ISO})." for each in said if each]
 
 
@@ -96,22 +95,19 @@ def _without_backlash(scene: Scene, section: TransientSection) -> list[str]:
 def planned_steps(scene: Scene, section: TransientSection) -> list[PlannedSteps]:
     """The time steps at each speed."""
     natural, teeth = natural_frequency(scene, section), scene.gear_pair().pinion.z
-    planned = []
-    for speed in section.speeds_rpm:
-        mesh = speed / 60.0 * teeth
-        length = 60.0 / (speed * teeth * scene.sweep.positions)
-        planned.append(PlannedSteps(speed, mesh, length, 1.0 / (natural * length)))
-    return planned
+    speeds = [MeshSpeed(speed, teeth) for speed in section.speeds_rpm]
+    lengths = [speed.mesh_period / scene.sweep.positions for speed in speeds]
+    return [PlannedSteps(speed, length, 1.0 / (natural * length)) for speed, length in zip(speeds, lengths)]
 
 
 def natural_frequency(scene: Scene, section: TransientSection) -> float:
     """Natural frequency f_n [Hz] of the gears on c_γα of ISO 6336-1, with the inertia that swings: of both gears, or of
     the one with the torque."""
     problem = gear_problem(scene)
-    pair, force = problem.pair, problem.torque / problem.pair.gears[problem.torque_on].base_radius
+    pair, force = problem.pair, problem.torque / problem.base_radius
     moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
     iso = method_b(pair, _swinging_mass(scene, section, problem), force, Accuracy(), moduli)
-    return iso.resonance_speed / 60.0 * pair.pinion.z
+    return MeshSpeed(iso.resonance_speed, pair.pinion.z).mesh_frequency
 
 
 def _swinging_mass(scene: Scene, section: TransientSection, problem: GearProblem) -> float:
@@ -119,4 +115,4 @@ def _swinging_mass(scene: Scene, section: TransientSection, problem: GearProblem
     inertias = moments_of_inertia(problem.pair, scene.dynamics or DynamicsSection())
     if section.drive == "free":
         return equivalent_mass(problem.pair, inertias)
-    return inertias[problem.torque_on] / problem.pair.gears[problem.torque_on].base_radius ** 2
+    return inertias[problem.torque_on] / problem.base_radius**2

@@ -28,7 +28,7 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
         added_inertia(moment, polar_moment(gear, section.density_kg_m3))
         for moment, gear in zip(settings.inertias, problem.pair.gears)
     ]
-    force = problem.torque / problem.pair.gears[problem.torque_on].base_radius
+    force = problem.torque / problem.base_radius
     moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
     iso = method_b(problem.pair, mass, force, Accuracy(), moduli)
     natural, bars = scene.planned_vibration().natural_speed, wanted_output(scene).error_bars

@@ -74,11 +74,6 @@ def require(holds: bool, message: str) -> None:
         raise typer.BadParameter(message)
 
 
-def unworn(scene: Scene) -> Scene:
-    """The scene without [wear], as these commands solve it: the gears as they are."""
-    return scene.model_copy(update={"wear": None})
-
-
 def warn(sentences: Sequence[str]) -> None:
     """Prints the warnings that a command has returned."""
     for sentence in sentences:

@@ -8,7 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed, speeds_to_periods
+from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, sweep_speeds
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.arrays import Floats
 
@@ -50,7 +51,7 @@ class GivenMesh:
     @property
     def natural_speed(self) -> float:
         """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness [r/min]."""
-        return 60.0 / (2.0 * np.pi * self.teeth) * float(np.sqrt(self.mean_stiffness / self.model.mass))
+        return MeshSpeed.of_natural(self.mean_stiffness, self.model.mass, self.teeth).rpm
 
     def body_speed(self, harmonic: int) -> float:
         """Infinite: there are no gear bodies."""

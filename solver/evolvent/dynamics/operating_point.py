@@ -25,9 +25,9 @@ from evolvent.dynamics.excitation.loaded_mesh import (
     under_torques,
 )
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed, speeds_to_periods
 from evolvent.dynamics.oscillator.response import histories
 from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT, Settled, settled, static_state
-from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState, SteadyState, steady_state
 from evolvent.dynamics.oscillator.torsional_model import History
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
@@ -80,8 +80,8 @@ class Operation:
     """Excitation by the mesh."""
     drive: Drive
     """Oscillator of the pair."""
-    period: float
-    """Mesh period [s]."""
+    speed: MeshSpeed
+    """Speed of the pinion."""
     motion: Motion
     """Motion after the vibration has settled."""
     paths: tuple[History, ...]
@@ -111,11 +111,6 @@ class Operation:
         if self.drive.settings.mesh != "force_surface":
             return math.nan
         return self.forces[1] * self.drive.model.load / float(self.excitation.loaded.forces[-1])
-
-    @property
-    def speed(self) -> float:
-        """Speed of the pinion [r/min]."""
-        return 60.0 / (self.drive.teeth * self.period)
 
     @property
     def state(self) -> Floats:
@@ -190,12 +185,13 @@ class OperatingPoint:
     ) -> Operation:
         # every rank follows the motion: it takes less than sending it
         pair = drive(model.pair, excitation, float(excitation.loaded.forces[shares.index(1.0)]), self.settings)
-        period = float(speeds_to_periods(np.array([self.speed]), pair.teeth)[0])
+        speed = MeshSpeed(self.speed, pair.teeth)
+        period = speed.mesh_period
         motion = self._arrived(pair, period) if before is None else _followed(pair, period, before.state)
         motion = _bounded(motion, self.speed)
         paths = _paths(pair, period, motion)
         course, lifted = _course(model.pair, pair, paths, np.mean if self.of_several == "mean" else np.max)
-        return Operation(excitation, pair, period, motion, paths, replace(model.load, course=course), lifted, positions)
+        return Operation(excitation, pair, speed, motion, paths, replace(model.load, course=course), lifted, positions)
 
     def searched(
         self, model: GearModel, torques: Sequence[float], places: Sequence[SearchedAt], comm: MPI.Comm

@@ -55,9 +55,9 @@ class OperationFigures:
         """Figures of a pair's operation."""
         pair, excitation = operation.drive, operation.excitation
         number = int(np.argmin(np.abs(excitation.loaded.forces - pair.model.load)))
-        found = response(pair.model, operation.period, operation.state, operation.repeats)
+        found = response(pair.model, operation.speed.mesh_period, operation.state, operation.repeats)
         return OperationFigures(
-            speed_rpm=operation.speed, natural_speed_rpm=pair.natural_speed,
+            speed_rpm=operation.speed.rpm, natural_speed_rpm=pair.natural_speed,
             mean_stiffness_N_per_um=1e-3 * pair.mean_stiffness,
             mean_secant_stiffness_N_per_um=1e-3 * float(np.mean(excitation.secant[:, number])),
             unloaded_peak_to_peak_um=UM * float(np.ptp(excitation.unloaded_error)),

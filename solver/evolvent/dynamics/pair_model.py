@@ -12,6 +12,7 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.one_degree import OneDegree, one_degree
 from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side, with_chords
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent.dynamics.small_system import GearShapes, pair_system
 from evolvent.gears.problem.gear_inertia import added_inertia, equivalent_mass
@@ -105,20 +106,16 @@ class Drive:
     def natural_speed(self) -> float:
         """Speed of the pinion at which the mesh frequency is the natural frequency at the mean stiffness in motion
         [r/min]."""
-        return self._speed(self.moving_stiffness / self.model.mass)
+        return MeshSpeed.of_natural(self.moving_stiffness, self.model.mass, self.teeth).rpm
 
     def body_speed(self, harmonic: int) -> float:
         """Speed of the pinion at which this mesh harmonic has the frequency `body_frequency` [r/min]."""
-        return 60.0 * self.body_frequency / (harmonic * self.teeth)
+        return MeshSpeed.of_frequency(self.body_frequency / harmonic, self.teeth).rpm
 
     @property
     def rigid_natural_speed(self) -> float:
         """Natural speed of the pinion with rigid bodies, all inertia at the bores [r/min]."""
-        return self._speed(self.mean_stiffness / self.equivalent_mass)
-
-    def _speed(self, square: float) -> float:
-        """Speed of the pinion [r/min] at which the mesh frequency is that of ω² [1/s²]."""
-        return math.sqrt(square) / (2.0 * math.pi) * 60.0 / self.teeth
+        return MeshSpeed.of_natural(self.mean_stiffness, self.equivalent_mass, self.teeth).rpm
 
 
 def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: DriveSettings) -> Drive:

@@ -53,7 +53,7 @@ def test_steps_of_each_speed() -> None:
     scene = pair()
     assert scene.transient is not None
     slow, *_ = planned_steps(scene, scene.transient)
-    assert (slow.speed, slow.mesh_frequency, slow.length) == pytest.approx((1500.0, 1250.0, 20e-6))
+    assert (slow.speed.rpm, slow.speed.mesh_frequency, slow.length) == pytest.approx((1500.0, 1250.0, 20e-6))
     assert slow.a_period == pytest.approx(1.0 / (NATURAL * 20e-6), rel=1e-3)
 
 

@@ -13,8 +13,9 @@ from mpi4py import MPI
 from evolvent.dynamics.figures.operation import operation_figure
 from evolvent.dynamics.operating_point import LEAST_FORCE, OperatingPoint, Operation
 from evolvent.dynamics.operation_figures import OperationFacts, OperationFigures, operation_warnings
+from evolvent.dynamics.oscillator.mesh_speed import speeds_to_periods
 from evolvent.dynamics.oscillator.response import response
-from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.speed_sweep import sweep_speeds
 from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.dynamics.results.histories import Motion, history_rows
 from evolvent.dynamics.results.tables import excitation_rows
@@ -71,7 +72,7 @@ def test_motion_is_that_of_the_sweep_over_the_speed() -> None:
         swept = sweep_speeds(pair.model, speeds_to_periods(np.linspace(*ends, 30), pair.teeth))
         wanted = swept.up[-1] if direction == "up" else swept.down[0]
         size, exact = (
-            response(pair.model, found.period, state).equivalent_amplitude
+            response(pair.model, found.speed.mesh_period, state).equivalent_amplitude
             for state in (found.state, wanted.motion.state)
         )
         assert size == pytest.approx(exact, rel=1e-6)
@@ -124,8 +125,8 @@ def test_forces_beyond_the_heaviest_torque_are_told() -> None:
 def test_picture_names_the_gear_bodies() -> None:
     """Below the title, as operation.json has them: elastic and rigid ones have other natural speeds."""
     found = operation(4000.0)
-    motion = list(history_rows([Motion(found.speed, "up", found.period, found.repeats, found.paths)]))
-    rows = excitation_rows(found.excitation, model().pair.pinion.base_radius)
+    motion = list(history_rows([Motion(found.speed, "up", found.repeats, found.paths)]))
+    rows = excitation_rows(found.excitation)
     assert OperationFacts.of(found).bodies == "rigid"
     for bodies in ("elastic", "rigid"):
         figure = operation_figure(replace(OperationFacts.of(found), bodies=bodies), motion, rows, None)

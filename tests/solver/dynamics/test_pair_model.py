@@ -9,8 +9,9 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.oscillator.mesh_law import Jammed, linear_side
+from evolvent.dynamics.oscillator.mesh_speed import speeds_to_periods
 from evolvent.dynamics.oscillator.response import response
-from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.speed_sweep import sweep_speeds
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive, lacking_room
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.scene.gear_problem import gear_problem
@@ -33,8 +34,8 @@ def driven(error: Floats, backlash: float, first: int = 0) -> Drive:
     """
     forces, error = LOAD * np.array([0.5, 1.0, 2.0]), np.roll(error, -first)
     loaded = LoadedMesh(
-        2.0 * np.pi / 50.0 * (first + np.arange(POSITIONS)) / POSITIONS, forces, error[:, None] + forces / STIFFNESS,
-        np.full((POSITIONS, 3), STIFFNESS),
+        2.0 * np.pi / 50.0 * (first + np.arange(POSITIONS)) / POSITIONS, forces, 1.0,
+        error[:, None] + forces / STIFFNESS, np.full((POSITIONS, 3), STIFFNESS),
     )
     return drive(PAIR, MeshExcitation(error, loaded), LOAD, DriveSettings((7.4, 7.4), 0.05, backlash))
 

@@ -29,7 +29,7 @@ def excitation() -> MeshExcitation:
     error = ERROR * np.cos(2.0 * np.pi * phases)
     stiffness = np.full((POSITIONS, 3), STATIC)
     return MeshExcitation(
-        error, LoadedMesh(2.0 * np.pi / 50.0 * phases, forces, error[:, None] + forces / STATIC, stiffness)
+        error, LoadedMesh(2.0 * np.pi / 50.0 * phases, forces, 1.0, error[:, None] + forces / STATIC, stiffness)
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_state import PairState
@@ -44,7 +45,7 @@ def moving(kind: str, friction: float, rpm: float, count: int = 1, free: bool = 
     damping = 0.1 * np.sqrt(3e5 * inertias[0]) / drive.lever((1.0, 1.0))
     pair = MovingPair(model, gears, drive, 0.02, damping / model.pair.pinion.base_radius)
     kept = KeptContacts(pair, POSITIONS, 1 if friction == 0.0 else model.bodies[0].d)
-    return PairTransient(pair, friction, 2.0 * np.pi * rpm / 60.0, TimeScheme(0.5), kept)
+    return PairTransient(pair, friction, MeshSpeed(rpm, model.pair.pinion.z), TimeScheme(0.5), kept)
 
 
 def started(transient: PairTransient) -> PairState:

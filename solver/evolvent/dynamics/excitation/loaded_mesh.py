@@ -40,14 +40,21 @@ class LoadedMesh:
 
     angles: Floats
     """(n,) pinion rotations [rad]."""
-    forces: Floats
-    """(m,) mesh forces along the line of action, in the transverse section: torque over base radius [N], ascending."""
+    torques: Floats
+    """(m,) torques, ascending [N·mm]."""
+    base_radius: float
+    """Base radius of the gear with the torques [mm]."""
     errors: Floats
     """(n, m) transmission error r_b1 φ_1 − r_b2 φ_2 [mm]."""
     stiffness: Floats
     """(n, m) tangent stiffness dF/ds [N/mm], of the whole face."""
     deflected: bool = False
     """Whether contact was searched again on deflected flanks."""
+
+    @property
+    def forces(self) -> Floats:
+        """(m,) mesh forces along the line of action, in the transverse section: torque over base radius [N]."""
+        return self.torques / self.base_radius
 
 
 def loaded_mesh(
@@ -56,8 +63,8 @@ def loaded_mesh(
     keep: Callable[[Figures], None] = lambda _: None,
 ) -> LoadedMesh:
     """The mesh at some positions, see `solved_figures`, which need not be a pitch."""
-    forces = np.array(torques) / _radius(model)
-    return mesh_of(solved_figures(model, torques, angles, comm, known, keep), forces, angles, model.deflected)
+    found = solved_figures(model, torques, angles, comm, known, keep)
+    return mesh_of(found, torques, _radius(model), angles, model.deflected)
 
 
 def solved_figures(
@@ -98,10 +105,12 @@ def certify_torques(found: Figures, torques: Sequence[float]) -> None:
         require_balance(float(imbalance), f"under {1e-3 * torque:.4g} N·m")
 
 
-def mesh_of(found: Figures, forces: Floats, angles: Floats, deflected: bool = False) -> LoadedMesh:
-    """Mesh from the figures of all positions. forces: (m,) along the line of action [N]."""
+def mesh_of(
+    found: Figures, torques: Sequence[float], radius: float, angles: Floats, deflected: bool = False
+) -> LoadedMesh:
+    """Mesh from the figures of all positions. torques: (m,) [N·mm]; radius: base radius of their gear [mm]."""
     figures = np.array([found[i] for i in range(len(angles))])
-    return LoadedMesh(angles, forces, figures[..., 0], figures[..., 1], deflected)
+    return LoadedMesh(angles, np.array(torques, dtype=float), radius, figures[..., 0], figures[..., 1], deflected)
 
 
 def loaded_mesh_again(
@@ -121,7 +130,7 @@ def loaded_mesh_again(
     rows = together(comm, lambda: tuple(_searched(models, own, before)))
     figures = [np.array([figures_of(*each) for each in zip(models, row)]) for row in rows]
     found = dict(enumerate(each for part in comm.allgather(figures) for each in part))
-    mesh = mesh_of(found, np.array(torques) / _radius(model), angles)
+    mesh = mesh_of(found, torques, _radius(model), angles)
     return mesh, tuple(dict(zip(torques, row)) for row in rows)
 
 

@@ -67,7 +67,7 @@ class FieldOfAction:
         """Frame of the animation at position k."""
         case = self.pressures.case
         angle = np.degrees(case.results[k].stand.angle)
-        subtitle = f"{case.speed:g} r/min, μ = {case.friction:g}; rotation of the pinion {angle:.2f}°"
+        subtitle = f"{case.name}; rotation of the pinion {angle:.2f}°"
         figure = sheet(f"{self.title}: contact with inertia", subtitle, (10.0, 4.8))
         field, force = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
         self._lines(field, self.pressures.moving.cuts[k])

@@ -101,11 +101,6 @@ def sweep_speeds(
     return SpeedSweep(known.periods, known.branch, tuple(map(tuple, known.coexisting)), tuple(up), tuple(down))
 
 
-def speeds_to_periods(speeds: Floats, teeth: int) -> Floats:
-    """Mesh periods (n,) [s] at speeds (n,) [r/min] of a gear with so many teeth."""
-    return 60.0 / (np.asarray(speeds, dtype=float) * teeth)
-
-
 def _branch(model: TorsionalModel, begin: float, end: float) -> Branch:
     """Branch of steady states from one mesh period to another, followed from both ends where one does not suffice."""
     try:

@@ -14,6 +14,7 @@ import numpy as np
 
 from evolvent.dynamics.oscillator.equation import SIZE, Oscillator
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.oscillator.stepping import STEP, advance
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
@@ -55,7 +56,8 @@ class TorsionalModel:
 
     def place(self, period: float) -> str:
         """A mesh period [s] as messages name it: by the speed of the pinion where that is known."""
-        return f"a mesh period of {period:.6g} s" if self.teeth is None else f"{60.0 / (self.teeth * period):.5g} r/min"
+        speed = None if self.teeth is None else MeshSpeed.of_period(period, self.teeth)
+        return f"a mesh period of {period:.6g} s" if speed is None else f"{speed.rpm:.5g} r/min"
 
     @cached_property
     def oscillator(self) -> Oscillator:

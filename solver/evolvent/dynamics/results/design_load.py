@@ -51,15 +51,12 @@ EXCITATION_FACTS = Record("excitation.json", ExcitationFacts)
 
 
 def excitation_facts(
-    title: str, level: str, excitation: MeshExcitation, radius: float, companion: CoarseExcitation,
-    warnings: Sequence[str] = (),
+    title: str, level: str, excitation: MeshExcitation, companion: CoarseExcitation, warnings: Sequence[str] = ()
 ) -> ExcitationFacts:
-    """Facts of an excitation. radius: base radius of the gear that holds the torque [mm]. warnings: sentences on all of
-    it."""
-    forces = excitation.loaded.forces
-    torques = tuple(float(1e-3 * radius * force) for force in forces)
+    """Facts of an excitation. warnings: sentences on all of it."""
+    torques = tuple(1e-3 * float(torque) for torque in excitation.loaded.torques)
     count = len(excitation.unloaded_error)
-    torque, size, error, lightest, heaviest = _design(excitation, radius, companion)
+    torque, size, error, lightest, heaviest = _design(excitation, companion)
     return ExcitationFacts(
         title=title, mesh_level=level, positions=count, torques_Nm=torques, design_torque_Nm=torque,
         design_peak_to_peak_um=size, design_peak_to_peak_um_error=error, design_from_Nm=lightest, design_to_Nm=heaviest,
@@ -68,7 +65,7 @@ def excitation_facts(
 
 
 def _design(
-    excitation: MeshExcitation, radius: float, companion: CoarseExcitation
+    excitation: MeshExcitation, companion: CoarseExcitation
 ) -> tuple[float | None, float | None, float | None, float | None, float | None]:
     """Design torque [N·m], peak-to-peak value and its error [µm], and the range of torques [N·m] in which the design
     load lies."""
@@ -83,7 +80,7 @@ def _design(
     if i in (0, len(loads) - 1):
         return None, None, None, None, None
     best = float(minimize_scalar(size, bounds=(loads[i - 1], loads[i + 1]), method="bounded").x)
-    to_torque, least = 1e-3 * radius, size(best)
+    to_torque, least = 1e-3 * excitation.loaded.base_radius, size(best)
     curves = list(pitch_curves(excitation, companion))[int(np.argmin(np.abs(forces - best)))]
     error = curves[LOADED].peak_to_peak_error
     if not np.isfinite(error):

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.oscillator.response import SAMPLES, histories
 from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import History
 from evolvent.dynamics.pair_model import Drive
-from evolvent.dynamics.results.response import UM, speed_of
+from evolvent.dynamics.results.response import UM
 from evolvent.results.tables.table import Table
 from evolvent_meshes.arrays import Floats
 
@@ -52,12 +53,10 @@ HISTORIES = Table("histories.csv", HistoryRow)
 class Motion:
     """Motion of a pair at one speed, one mesh period after the other."""
 
-    speed: float
-    """Speed of the pinion [r/min]."""
+    speed: MeshSpeed
+    """Speed of the pinion."""
     way: str
     """Direction in which the pair has come to the speed: up or down."""
-    period: float
-    """Mesh period [s]."""
     repeats: int
     """Mesh periods after which the motion repeats; 0 where it does not, as in `Running`."""
     paths: tuple[History, ...]
@@ -77,25 +76,26 @@ class Motion:
 
 def motions(drive: Drive, swept: SpeedSweep, speeds: Sequence[float]) -> list[Motion]:
     """Motions running up and down at each of these speeds of the sweep [r/min]."""
-    known = np.array([speed_of(drive, float(period)) for period in swept.periods])
+    known = [MeshSpeed.of_period(period, drive.teeth) for period in swept.periods]
     found, phases = [], np.arange(SAMPLES) / SAMPLES
     for speed in speeds:
-        i = int(np.argmin(np.abs(known - speed)))
+        i = int(np.argmin([abs(each.rpm - speed) for each in known]))
         period = float(swept.periods[i])
         for way, run in (("up", swept.up[i]), ("down", swept.down[i])):
             count = run.repeats or LONGEST_REPEAT
             paths = histories(drive.model, period, run.motion.state, count, phases)
-            found.append(Motion(float(known[i]), way, period, run.repeats, tuple(paths)))
+            found.append(Motion(known[i], way, run.repeats, tuple(paths)))
     return found
 
 
 def history_rows(found: Iterable[Motion]) -> Iterator[HistoryRow]:
     """Rows of histories.csv, one motion after the other."""
     for motion in found:
+        speed, ms = motion.speed.rpm, 1e3 * motion.speed.mesh_period
         names = "transmission_error", "error", "velocity", "force", "side", "displacement"
         for phase, s, e, velocity, force, side, displacement in zip(motion.phases, *map(motion.over, names)):
             yield HistoryRow(
-                speed_rpm=motion.speed, way=motion.way, phase=float(phase), time_ms=1e3 * float(phase) * motion.period,
+                speed_rpm=speed, way=motion.way, phase=float(phase), time_ms=ms * float(phase),
                 transmission_error_um=UM * float(s), elastic_um=UM * float(s - e), velocity_mm_per_s=float(velocity),
                 force_N=float(force), contact=int(side), displacement_um=UM * float(displacement),
             )

@@ -12,13 +12,11 @@ OPERATION = Record("operation.json", OperationFacts)
 OPERATION_TABLES = tuple(table.name for table in (EXCITATION, HARMONICS, HISTORIES, OPERATION))
 
 
-def operation_tables(operation: Operation, direction: str, radius: float) -> list[Filled]:
-    """excitation.csv, harmonics.csv, histories.csv and operation.json. direction: up or down; radius: base radius of
-    the gear with the torque [mm]."""
-    figures = OperationFacts.of(operation)
-    motion = Motion(figures.speed_rpm, direction, operation.period, operation.repeats, operation.paths)
+def operation_tables(operation: Operation, direction: str) -> list[Filled]:
+    """excitation.csv, harmonics.csv, histories.csv and operation.json. direction: up or down."""
+    motion = Motion(operation.speed, direction, operation.repeats, operation.paths)
     return [
-        EXCITATION.of(excitation_rows(operation.excitation, radius)),
-        HARMONICS.of(harmonic_rows(operation.excitation, radius)), HISTORIES.of(history_rows([motion])),
-        OPERATION.of(figures),
+        EXCITATION.of(excitation_rows(operation.excitation)),
+        HARMONICS.of(harmonic_rows(operation.excitation)), HISTORIES.of(history_rows([motion])),
+        OPERATION.of(OperationFacts.of(operation)),
     ]

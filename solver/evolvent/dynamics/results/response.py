@@ -10,6 +10,7 @@ import numpy as np
 
 from evolvent.dynamics.body_sentences import near_body_vibration
 from evolvent.dynamics.mesh_oscillator import MeshOscillator
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.oscillator.response import Response, response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
@@ -202,11 +203,6 @@ RESPONSE, BRANCH = Table("response.csv", ResponseRow), Table("branch.csv", Branc
 DYNAMICS = Record("dynamics.json", DriveSummary)
 
 
-def speed_of(drive: MeshOscillator, period: float) -> float:
-    """Speed of the pinion [r/min] at a mesh period [s]."""
-    return 60.0 / (drive.teeth * period)
-
-
 def responses(drive: MeshOscillator, swept: SpeedSweep) -> Responses:
     """Responses at all speeds; of a motion that grows beyond measure that of the last mesh period within."""
     return {
@@ -225,7 +221,7 @@ def response_rows(
     for way, runs in (("up", swept.up), ("down", swept.down)):
         bars = UM * errors.amplitude[way], errors.dynamic_factor[way]
         for period, run, each, size_error, factor_error in zip(swept.periods, runs, found[way], *bars):
-            speed = speed_of(drive, float(period))
+            speed = MeshSpeed.of_period(period, drive.teeth).rpm
             yield ResponseRow(
                 speed_rpm=speed, way=way, repeats=run.repeats, jumped=run.jumped,
                 equivalent_amplitude_um=UM * each.equivalent_amplitude, equivalent_amplitude_um_error=float(size_error),
@@ -246,14 +242,14 @@ def branch_rows(drive: MeshOscillator, swept: SpeedSweep) -> Iterator[BranchRow]
         size = response(drive.model, state.period, state.state).equivalent_amplitude
         fold, connected = i in swept.branch.folds, i > 0 and i - 1 not in gaps
         yield BranchRow(
-            speed_rpm=speed_of(drive, state.period), equivalent_amplitude_um=UM * size, stable=bool(stable), fold=fold,
-            connected=connected,
+            speed_rpm=MeshSpeed.of_period(state.period, drive.teeth).rpm, equivalent_amplitude_um=UM * size,
+            stable=bool(stable), fold=fold, connected=connected,
         )
 
 
 def jumps(drive: MeshOscillator, runs: Iterable[Running]) -> tuple[float, ...]:
     """Speeds [r/min] at which a pair leaves the branch, in the order of its motions."""
-    return tuple(speed_of(drive, run.left_at) for run in runs if run.left_at is not None)
+    return tuple(MeshSpeed.of_period(run.left_at, drive.teeth).rpm for run in runs if run.left_at is not None)
 
 
 def summary(
@@ -264,8 +260,9 @@ def summary(
     surface's torques [N]. warnings: sentences on all of it."""
     pinion, wheel = settings.inertias
     added = settings.added_inertias
-    folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
+    folds = _different([swept.branch.points[i].period for i in swept.branch.folds], drive.teeth)
     begin, end = iso.main_resonance
+    natural = MeshSpeed(drive.natural_speed, drive.teeth)
     return DriveSummary(
         equivalent_mass_kg=1e3 * drive.equivalent_mass, pinion_inertia_kg_m2=1e-3 * pinion,
         wheel_inertia_kg_m2=1e-3 * wheel, pinion_added_inertia_kg_m2=1e-3 * added[0] if added else None,
@@ -278,7 +275,7 @@ def summary(
         body_frequency_Hz=drive.body_frequency if settings.bodies is not None else None,
         static_force_N=drive.model.load, damping_N_s_per_mm=drive.model.damping, backlash_um=UM * settings.backlash,
         mesh=settings.mesh, damping_ratio=settings.damping_ratio, damped_apart=settings.damping_in_separation,
-        ground_damping_ratio=settings.ground_damping_ratio, mesh_frequency_Hz=drive.natural_speed * drive.teeth / 60.0,
+        ground_damping_ratio=settings.ground_damping_ratio, mesh_frequency_Hz=natural.mesh_frequency,
         folds_rpm=folds, jumps_up_rpm=jumps(drive, swept.up), jumps_up_rpm_error=errors.jumps["up"],
         jumps_down_rpm=jumps(drive, swept.down[::-1]), jumps_down_rpm_error=errors.jumps["down"],
         heaviest_torque_share=largest / heaviest if settings.mesh == "force_surface" else None,
@@ -290,8 +287,10 @@ def summary(
     )
 
 
-def _different(speeds: Iterable[float]) -> tuple[float, ...]:
-    """Speeds without repetitions, to six digits: pieces of the branch may be followed over the same fold."""
+def _different(periods: Iterable[float], teeth: int) -> tuple[float, ...]:
+    """Speeds [r/min] at mesh periods [s], without repetitions to six digits: pieces of the branch may be followed over
+    the same fold."""
+    speeds = (MeshSpeed.of_period(period, teeth).rpm for period in periods)
     return tuple({float(f"{speed:.6g}"): speed for speed in speeds}.values())
 
 

@@ -20,12 +20,11 @@ them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.pair_model import Drive
 from evolvent.dynamics.results.curves import SECANT, TANGENT, CoarseExcitation, PitchCurve
@@ -147,7 +146,7 @@ def halves(excitation: MeshExcitation) -> tuple[MeshExcitation, ...]:
     return tuple(
         MeshExcitation(
             excitation.unloaded_error[half],
-            LoadedMesh(loaded.angles[half], loaded.forces, loaded.errors[half], loaded.stiffness[half]),
+            replace(loaded, angles=loaded.angles[half], errors=loaded.errors[half], stiffness=loaded.stiffness[half]),
         )
         for half in kept
     )

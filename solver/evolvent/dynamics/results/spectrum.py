@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.pair_model import Drive
-from evolvent.dynamics.results.response import UM, speed_of
+from evolvent.dynamics.results.response import UM
 from evolvent.results.tables.table import Table
 
 
@@ -38,7 +39,7 @@ def spectrum_rows(drive: Drive, swept: SpeedSweep, found: dict[str, list[Respons
     """Rows of spectrum.csv: up, then down, at ascending speeds, each with ascending orders."""
     for way, responses in found.items():
         for period, each in zip(swept.periods, responses, strict=True):
-            speed, lines = speed_of(drive, float(period)), each.spectrum
+            speed, lines = MeshSpeed.of_period(period, drive.teeth).rpm, each.spectrum
             for order, force, total in zip(lines.orders, lines.force, lines.total):
                 yield SpectrumRow(
                     speed_rpm=speed, way=way, order=float(order), frequency_Hz=float(order / period),

@@ -85,17 +85,15 @@ class HarmonicRow:
 EXCITATION, HARMONICS = Table("excitation.csv", ExcitationRow), Table("harmonics.csv", HarmonicRow)
 
 
-def excitation_rows(
-    excitation: MeshExcitation, radius: float, companion: CoarseExcitation = NO_COMPANION
-) -> list[ExcitationRow]:
-    """Rows of excitation.csv, the lightest torque first. radius: base radius of the gear with the torque [mm]."""
+def excitation_rows(excitation: MeshExcitation, companion: CoarseExcitation = NO_COMPANION) -> list[ExcitationRow]:
+    """Rows of excitation.csv, the lightest torque first."""
     loaded, unloaded, rows = excitation.loaded, unloaded_curve(excitation).values, []
-    for force, curves in zip(loaded.forces, pitch_curves(excitation, companion)):
+    for torque, force, curves in zip(loaded.torques, loaded.forces, pitch_curves(excitation, companion)):
         error, tangent, secant = curves[LOADED], curves[TANGENT], curves[SECANT]
         of_error, of_tangent, of_secant = error.bars, tangent.bars, secant.bars
         for k, angle in enumerate(np.degrees(loaded.angles)):
             rows.append(ExcitationRow(
-                pinion_angle_deg=float(angle), torque_Nm=1e-3 * float(force) * radius, mesh_force_N=float(force),
+                pinion_angle_deg=float(angle), torque_Nm=1e-3 * float(torque), mesh_force_N=float(force),
                 unloaded_transmission_error_um=float(unloaded[k]), transmission_error_um=float(error.values[k]),
                 transmission_error_um_error=float(of_error[k]), tangent_stiffness_N_per_um=float(tangent.values[k]),
                 tangent_stiffness_N_per_um_error=float(of_tangent[k]),
@@ -104,15 +102,13 @@ def excitation_rows(
     return rows
 
 
-def harmonic_rows(
-    excitation: MeshExcitation, radius: float, companion: CoarseExcitation = NO_COMPANION
-) -> list[HarmonicRow]:
+def harmonic_rows(excitation: MeshExcitation, companion: CoarseExcitation = NO_COMPANION) -> list[HarmonicRow]:
     """Rows of harmonics.csv: all quantities of excitation.csv that vary over the pitch, each with as many harmonics as
     its positions hold, at most five."""
     rows = list(_harmonics(NO_TORQUE, unloaded_curve(excitation)))
-    for force, curves in zip(excitation.loaded.forces, pitch_curves(excitation, companion)):
+    for torque, curves in zip(excitation.loaded.torques, pitch_curves(excitation, companion)):
         for curve in curves.values():
-            rows += _harmonics(1e-3 * float(force) * radius, curve)
+            rows += _harmonics(1e-3 * float(torque), curve)
     return rows
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.pair_model import Drive
-from evolvent.dynamics.results.response import UM, responses, speed_of
+from evolvent.dynamics.results.response import UM, responses
 from evolvent.results.tables.table import Table
 
 
@@ -51,8 +52,9 @@ def map_rows(torque: float, drive: Drive, swept: SpeedSweep) -> Iterator[MapRow]
     for way, runs in (("up", swept.up), ("down", swept.down)):
         for period, run, each in zip(swept.periods, runs, found[way]):
             yield MapRow(
-                torque_Nm=torque, natural_speed_rpm=drive.natural_speed, speed_rpm=speed_of(drive, float(period)),
-                way=way, repeats=run.repeats, equivalent_amplitude_um=UM * each.equivalent_amplitude,
+                torque_Nm=torque, natural_speed_rpm=drive.natural_speed,
+                speed_rpm=MeshSpeed.of_period(period, drive.teeth).rpm, way=way, repeats=run.repeats,
+                equivalent_amplitude_um=UM * each.equivalent_amplitude,
                 elastic_equivalent_amplitude_um=UM * each.elastic_equivalent_amplitude,
                 largest_force_N=each.largest_force, dynamic_factor=each.largest_force / drive.model.load,
                 separated_share=each.separated_share, back_contact_share=each.back_contact_share,

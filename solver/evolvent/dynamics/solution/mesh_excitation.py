@@ -47,7 +47,7 @@ class GearExcitation:
     @property
     def base_radius(self) -> float:
         """Base radius of the gear with the torque [mm]."""
-        return self.pair.gears[self.torque_on].base_radius
+        return self.mesh.loaded.base_radius
 
     @property
     def angles(self) -> Floats:
@@ -57,7 +57,7 @@ class GearExcitation:
     @property
     def torques(self) -> Floats:
         """Torques (m,), ascending [N·mm]."""
-        return self.mesh.loaded.forces * self.base_radius
+        return self.mesh.loaded.torques
 
     @property
     def unloaded_error(self) -> Floats:
@@ -85,7 +85,7 @@ class GearExcitation:
         from evolvent.dynamics.results.tables import excitation_rows
         from evolvent.results.solution.user_files import save_rows
 
-        return save_rows(path, excitation_rows(self.mesh, self.base_radius))
+        return save_rows(path, excitation_rows(self.mesh))
 
     def plot(self, path: Path | str) -> Path:
         """Draws the curves, the force over the deflection and the peak-to-peak transmission error over the torque to a
@@ -96,12 +96,9 @@ class GearExcitation:
         from evolvent.dynamics.results.tables import excitation_rows, harmonic_rows
         from evolvent.results.solution.user_files import save_picture
 
-        mesh, radius = self.mesh, self.base_radius
         title = f"Gear pair {self.pair.pinion.z}/{self.pair.wheel.z}"
-        facts = excitation_facts(title, "as condensed", mesh, radius, NO_COMPANION)
-        return save_picture(
-            path, excitation_picture(facts, excitation_rows(mesh, radius), harmonic_rows(mesh, radius))
-        )
+        facts = excitation_facts(title, "as condensed", self.mesh, NO_COMPANION)
+        return save_picture(path, excitation_picture(facts, excitation_rows(self.mesh), harmonic_rows(self.mesh)))
 
 
 def mesh_excitation(
@@ -127,7 +124,7 @@ def mesh_excitation(
     def solved(deflected: bool) -> LoadedMesh:
         found = solved_figures(replace(gears, deflected=deflected), torques, angles, comm, {}, lambda _: None)
         certify_torques(found, torques)
-        return mesh_of(found, np.array(torques, dtype=float) / radius, angles, deflected)
+        return mesh_of(found, torques, radius, angles, deflected)
 
     loaded = balanced(solved, gears.deflected)
     unloaded = unloaded_error(RigidFlanks(gears.pair, flanks), angles, gears.load.on)

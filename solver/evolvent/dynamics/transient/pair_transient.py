@@ -15,6 +15,7 @@ import numpy as np
 
 from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
 from evolvent.contact.transient.time_schemes.time_scheme import KinematicState, TimeScheme, TimeStep
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.transient.certificates import WITHIN, certify_step
 from evolvent.dynamics.transient.divided_steps import UNDIVIDED, DividedSteps, StepsTaken, part
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
@@ -70,8 +71,8 @@ class PairTransient:
     """Gear pair with its inertia."""
     friction: float
     """Friction coefficient μ."""
-    speed: float
-    """Speed of the pinion [rad/s]."""
+    speed: MeshSpeed
+    """Speed of the pinion."""
     scheme: TimeScheme
     """Scheme of the time steps."""
     contacts: KeptContacts
@@ -82,12 +83,12 @@ class PairTransient:
     @property
     def name(self) -> str:
         """Speed and friction, for messages."""
-        return f"{self.speed * 30.0 / np.pi:g} r/min, μ = {self.friction:g}"
+        return f"{self.speed.rpm:g} r/min, μ = {self.friction:g}"
 
     @property
     def time_step(self) -> float:
         """Time from one position to the next, the longest time step [s]."""
-        return self.contacts.step_angle / self.speed
+        return self.contacts.step_angle / self.speed.rad_s
 
     def run(self, state: PairState, periods: int) -> Iterator[MovingMoment]:
         """The positions of so many mesh periods, from a state at pinion rotation 0, each time step in balance. Raises

@@ -169,6 +169,11 @@ class GearProblem:
         return not any(varies) and gears[0].face_width == gears[1].face_width
 
     @property
+    def base_radius(self) -> float:
+        """Base radius of the gear with the torque [mm]."""
+        return self.pair.gears[self.torque_on].base_radius
+
+    @property
     def is_plane(self) -> bool:
         """Whether it is solved in plane strain."""
         return self.has_equal_sections and not self.options.in_space

@@ -41,10 +41,8 @@ class SolvedExcitation:
 
     def tables(self, loads: SceneTorques) -> list[Filled]:
         """Tables of the excitation."""
-        radius, scene, solved = loads.base_radius, loads.scene, (self.excitation, loads.base_radius, self.companion)
-        facts = excitation_facts(
-            scene.title, scene.mesh.level, self.excitation, radius, self.companion, list(self.warnings)
-        )
+        scene, solved = loads.scene, (self.excitation, self.companion)
+        facts = excitation_facts(scene.title, scene.mesh.level, *solved, self.warnings)
         return [
             EXCITATION.of(excitation_rows(*solved)), HARMONICS.of(harmonic_rows(*solved)), EXCITATION_FACTS.of(facts)
         ]
@@ -94,6 +92,6 @@ def loaded_pitch(call: Call, loads: SceneTorques, angles: Floats, meshes: Meshes
         if model is not None:
             found = solved_figures(model, loads.torques, angles, call.comm, found, keep)
         certify_torques(found, loads.torques)
-        return mesh_of(found, loads.forces, angles, deflected)
+        return mesh_of(found, loads.torques, loads.problem.base_radius, angles, deflected)
 
     return balanced(solved, asked)

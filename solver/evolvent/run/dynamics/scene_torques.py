@@ -12,8 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-
 from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -21,7 +19,6 @@ from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import under_torque
 from evolvent.scene.scene import Scene
-from evolvent_meshes.arrays import Floats
 
 NARROWEST = 0.35
 """Elements across the contact width from which on error bars hold nine errors in ten: at level quick from 5 % of the
@@ -43,16 +40,6 @@ class SceneTorques:
         own = gear_problem(self.scene)
         lightest, heaviest = own.mesh_torques or (own.torque, own.torque)
         return replace(own, mesh_torques=(lightest, max(heaviest, self.torques[-1])))
-
-    @property
-    def base_radius(self) -> float:
-        """Base radius of the gear that the torque acts on [mm]."""
-        return self.problem.pair.gears[self.problem.torque_on].base_radius
-
-    @property
-    def forces(self) -> Floats:
-        """(m,) mesh forces along the line of action [N]."""
-        return np.array(self.torques) / self.base_radius
 
     @property
     def elements(self) -> tuple[float, ...]:

@@ -28,25 +28,24 @@ def torque_map(
     excitation: MeshExcitation,
     problem: GearProblem,
     settings: DriveSettings,
-    loads: Sequence[float],
+    torques: Sequence[float],
     speeds: Floats,
     computed: Callable[[], None] = lambda: None,
 ) -> TorqueMap:
-    """The pair under static loads (m,) [N], at most the heaviest of the excitation, at ascending speeds (n,) [r/min]. A
-    load without steady states to be found has no rows and a warning: the others are not lost for it.
+    """The pair under torques (m,) [N·mm], at most the heaviest of the excitation, at ascending speeds (n,) [r/min]. One
+    without steady states to be found has no rows and a warning: the others are not lost for it.
 
     problem: its pair, and the gear that the torque is on.
-    computed: called after each load.
+    computed: called after each torque.
     """
     rows: list[MapRow] = []
     warnings: list[str] = []
-    radius = problem.pair.gears[problem.torque_on].base_radius
-    for load in sorted(loads):
-        torque, pair = 1e-3 * load * radius, drive(problem.pair, excitation, load, settings)
+    for torque in sorted(torques):
+        pair = drive(problem.pair, excitation, torque / problem.base_radius, settings)
         try:
-            rows += map_rows(torque, pair, sweep_at(pair, speeds))
+            rows += map_rows(1e-3 * torque, pair, sweep_at(pair, speeds))
         except NoSteadyState as error:
-            warnings.append(f"torque_map.csv: nothing under {torque:.4g} N·m: {error}")
+            warnings.append(f"torque_map.csv: nothing under {1e-3 * torque:.4g} N·m: {error}")
         computed()
     if settings.mesh == "force_surface":
         warnings += _beyond(rows, float(excitation.loaded.forces[-1]))

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from evolvent.dynamics.body_sentences import bodies_said
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.oscillator.response import MESHES
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.dynamics.results.histories import Motion, motions
-from evolvent.dynamics.results.response import largest_force, speed_of
+from evolvent.dynamics.results.response import largest_force
 from evolvent.dynamics.results.response_errors import Vibration, VibrationErrors
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, MethodB, method_b
@@ -91,11 +93,11 @@ def _over_torque(
 ) -> TorqueMap:
     """The map over torque and speed; without rows where the section asks for none. vibrating: under the scene's torque.
     """
-    loads = [vibrating.model.load * percent / 100.0 for percent in section.map_percents]
-    if loads:
-        progress.stage(MAP, len(loads))
+    torques = [problem.torque * percent / 100.0 for percent in section.map_percents]
+    if torques:
+        progress.stage(MAP, len(torques))
     speeds = map_list(vibrating.natural_speed, section)
-    return torque_map(excitation, problem, settings, loads, speeds, progress.advance)
+    return torque_map(excitation, problem, settings, torques, speeds, progress.advance)
 
 
 def _warnings(
@@ -105,7 +107,7 @@ def _warnings(
     heaviest torque. share: largest mesh force, and that of the heaviest torque
     [N]."""
     found, deflection = [], vibrating.model.load / vibrating.mean_stiffness
-    found += bodies_said(vibrating, *(speed_of(vibrating, float(swept.periods[end])) for end in (0, -1)))
+    found += bodies_said(vibrating, *_ends(vibrating, swept.periods))
     if settings.backlash < deflection:
         found.append(
             f"dynamics.backlash_um: found {1e3 * settings.backlash:.3g} µm, less than the static deflection of "
@@ -125,20 +127,26 @@ def _not_followed(vibrating: Drive, swept: SpeedSweep) -> list[str]:
     found, branch = [], swept.branch
     if branch.gaps or branch.lost:
         ends = [branch.points[i].period for gap in branch.gaps for i in (gap, gap + 1)]
-        speeds = ", ".join(f"{speed_of(vibrating, period):.0f}" for period in ends)
+        speeds = ", ".join(f"{MeshSpeed.of_period(period, vibrating.teeth).rpm:.0f}" for period in ends)
         found.append(
             f"steady states: found {len(branch.gaps) + 1} pieces that are not connected (branch.csv), with ends at "
             f"{speeds or 'one end of the'} r/min. {' '.join(f'{each}.' for each in branch.lost)}".rstrip()
         )
     gone = {float(period) for runs in (swept.up, swept.down) for period, run in zip(swept.periods, runs) if run.escaped}
     if gone:
-        slowest, fastest = (speed_of(vibrating, period) for period in (max(gone), min(gone)))
+        slowest, fastest = _ends(vibrating, gone)
         found.append(
             f"response.csv: at {len(gone)} of {len(swept.periods)} speeds, from {slowest:.0f} to {fastest:.0f} r/min, "
             f"the motion grows beyond {BEYOND_MEASURE:g} times the static deflection, as the varying stiffness feeds "
             "in more than the dampers take out; its figures there are of the last mesh before. Give more damping"
         )
     return found
+
+
+def _ends(vibrating: Drive, periods: Iterable[float]) -> tuple[float, float]:
+    """Lowest and highest speed [r/min] of mesh periods [s]."""
+    speeds = [MeshSpeed.of_period(period, vibrating.teeth).rpm for period in periods]
+    return min(speeds), max(speeds)
 
 
 def _branch_warnings(swept: SpeedSweep) -> list[str]:
@@ -159,7 +167,7 @@ def _not_repeating(vibrating: Drive, swept: SpeedSweep) -> list[str]:
             if run.repeats == 0 and not run.escaped]
     if not wild:
         return []
-    slowest, fastest = (speed_of(vibrating, period) for period in (max(wild), min(wild)))
+    slowest, fastest = _ends(vibrating, wild)
     return [
         f"response.csv: {len(wild)} of {2 * len(swept.periods)} motions, from {slowest:.0f} to {fastest:.0f} r/min, "
         f"do not repeat or have not settled: their forces are those of {MESHES} meshes, and single ones may be larger"

@@ -206,12 +206,11 @@ def _of_operation(scene: Scene, operation: Operation | None) -> list[Filled]:
     if operation is None:
         return []
     assert scene.dynamics is not None
-    loaded = gear_problem(scene)
-    return operation_tables(operation, scene.dynamics.direction, loaded.pair.gears[loaded.torque_on].base_radius)
+    return operation_tables(operation, scene.dynamics.direction)
 
 
 def _about_operation(operation: Operation | None) -> Iterator[str]:
     """Warnings on the vibration under which contact was computed."""
     if operation is not None:
-        yield from bodies_said(operation.drive, operation.speed, operation.speed)
+        yield from bodies_said(operation.drive, operation.speed.rpm, operation.speed.rpm)
         yield from operation_warnings([OperationFigures.of(operation)])

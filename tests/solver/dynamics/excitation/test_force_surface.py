@@ -24,7 +24,7 @@ def stiffening() -> MeshExcitation:
     unloaded = 1e-3 * np.sin(50.0 * ANGLES)
     depths = np.column_stack([depth(float(force)) for force in FORCES])
     stiffness = FIRST[:, None] + 2.0 * SECOND[:, None] * depths
-    return MeshExcitation(unloaded, LoadedMesh(ANGLES, FORCES, unloaded[:, None] + depths, stiffness))
+    return MeshExcitation(unloaded, LoadedMesh(ANGLES, FORCES, 1.0, unloaded[:, None] + depths, stiffness))
 
 
 @pytest.mark.parametrize("load", [50.0, 600.0, 1000.0, 1700.0, 4799.0])
@@ -52,7 +52,7 @@ def test_solved_loads_are_as_solved() -> None:
 def test_series_adds_its_compliance_between_solved_loads() -> None:
     """A spring k_s behind a mesh of constant stiffness k. Exact: x = F/k + F/k_s, 1/(1/k + 1/k_s)."""
     k, series, load = np.tile(3e5 + 1e3 * np.arange(6)[:, None], len(FORCES)), 5e5, 700.0
-    mesh = MeshExcitation(np.zeros(6), LoadedMesh(ANGLES, FORCES, FORCES / k, k)).in_series(series)
+    mesh = MeshExcitation(np.zeros(6), LoadedMesh(ANGLES, FORCES, 1.0, FORCES / k, k)).in_series(series)
     x, stiffness = mesh.under(load)
     assert x == pytest.approx(load / k[:, 0] + load / series, rel=1e-9)
     assert stiffness == pytest.approx(1.0 / (1.0 / k[:, 0] + 1.0 / series), rel=1e-9)

@@ -36,6 +36,7 @@ def test_each_torque_is_that_of_a_sweep() -> None:
     assert mesh().errors[:, number] == pytest.approx(curves.of("transmission_error"), rel=1e-8)
     stiffness = 20.0 * np.array([result.stiffness for result in curves.results])
     assert mesh().stiffness[:, number] == pytest.approx(stiffness, rel=1e-6)
+    assert mesh().torques.tolist() == TORQUES.tolist()
     assert mesh().forces == pytest.approx(TORQUES / model().pair.pinion.base_radius)
 
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from evolvent.dynamics.figures.field_of_action import FieldOfAction
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.results.transient.cases import CasePressures, TransientCase
 from evolvent.dynamics.transient.divided_steps import StepsTaken
 from evolvent.dynamics.transient.pair_transient import PairMoment
@@ -36,7 +37,7 @@ def field(file: str) -> FieldOfAction:
     )
     periods = MeshPeriods(moments, np.zeros(len(moments)), np.zeros(1), 0.005, Residuals(*nothing), 0.0)
     still = PitchPressure(run.pair, tuple(position[0].cut for position in run.positions), run.inner_path)
-    case = TransientCase(1500.0, run.frictions[0], periods, tuple(results), 2.0)
+    case = TransientCase(MeshSpeed(1500.0, run.pair.pinion.z), run.frictions[0], periods, tuple(results), 2.0)
     return FieldOfAction(run.scene.title, run.pair, CasePressures(case, still, still))
 
 

@@ -16,7 +16,8 @@ from matplotlib.figure import Figure
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.figures.response import BODIES, ISO, response_figure
-from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.mesh_speed import speeds_to_periods
+from evolvent.dynamics.oscillator.speed_sweep import sweep_speeds
 from evolvent.dynamics.pair_model import DriveSettings, drive
 from evolvent.dynamics.results.response import branch_rows, largest_force, response_rows, responses, summary
 from evolvent.dynamics.results.response_errors import Vibration, VibrationErrors, vibration_errors
@@ -37,7 +38,7 @@ def drawn(known: bool, accuracy: Accuracy = DEVIATING, **changed: Any) -> Figure
     pair, forces = gear_problem(spur_scene()).pair, np.array([LOAD, 2.0 * LOAD])
     error, stiffness = 2e-4 * np.cos(2.0 * np.pi * np.arange(8) / 8), np.full((8, 2), 3e5)
     angles = 2.0 * np.pi / 50.0 * np.arange(8) / 8
-    mesh = MeshExcitation(error, LoadedMesh(angles, forces, error[:, None] + forces / stiffness, stiffness))
+    mesh = MeshExcitation(error, LoadedMesh(angles, forces, 1.0, error[:, None] + forces / stiffness, stiffness))
     vibrating = drive(pair, mesh, LOAD, SETTINGS)
     swept = sweep_speeds(vibrating.model, speeds_to_periods(SPEEDS, 50))
     found = responses(vibrating, swept)

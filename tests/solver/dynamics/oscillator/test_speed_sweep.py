@@ -11,8 +11,9 @@ import pytest
 from evolvent.dynamics.oscillator import speed_sweep
 from evolvent.dynamics.oscillator.continuation import Branch
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, linear_side, no_side
+from evolvent.dynamics.oscillator.mesh_speed import speeds_to_periods
 from evolvent.dynamics.oscillator.settling import settled
-from evolvent.dynamics.oscillator.speed_sweep import OnBranch, Running, SpeedSweep, speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.speed_sweep import OnBranch, Running, SpeedSweep, sweep_speeds
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState, SteadyState, steady_state
 from evolvent.dynamics.oscillator.time_integration import integrate
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history

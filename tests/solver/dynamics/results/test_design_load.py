@@ -25,12 +25,14 @@ def mesh(size: float = 2e-3, forces: tuple[float, ...] = (500.0, 1000.0, 1500.0,
     softness = (1.0 + size * STIFFNESS / DESIGN * COSINE) / STIFFNESS
     error = -size * COSINE
     stiffness = np.repeat(1.0 / softness[:, None], len(loads), axis=1)
-    loaded = LoadedMesh(np.arange(24.0), loads, error[:, None] + loads * softness[:, None], stiffness)
+    loaded = LoadedMesh(
+        np.arange(24.0), RADIUS * loads, RADIUS, error[:, None] + loads * softness[:, None], stiffness
+    )
     return MeshExcitation(error, loaded)
 
 
 def facts(excitation: MeshExcitation, companion: CoarseExcitation = NO_COMPANION) -> ExcitationFacts:
-    return excitation_facts("a mesh", "quick", excitation, RADIUS, companion)
+    return excitation_facts("a mesh", "quick", excitation, companion)
 
 
 def test_design_load_between_torques() -> None:

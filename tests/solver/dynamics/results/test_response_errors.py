@@ -31,7 +31,7 @@ def excitation(stiffness: float, positions: int = 12) -> MeshExcitation:
     """A constant stiffness [N/mm] under two loads, without unloaded error."""
     forces = np.array([LOAD, 2.0 * LOAD])
     angles, whole = 2.0 * np.pi / 50.0 * np.arange(positions) / positions, np.full((positions, 2), stiffness)
-    return MeshExcitation(np.zeros(positions), LoadedMesh(angles, forces, forces / whole, whole))
+    return MeshExcitation(np.zeros(positions), LoadedMesh(angles, forces, 1.0, forces / whole, whole))
 
 
 def vibration(amplitudes: list[float], factors: list[float], up: tuple[float, ...] = ()) -> Vibration:

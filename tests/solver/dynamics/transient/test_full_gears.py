@@ -22,6 +22,7 @@ from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.contact.nitsche.flux_recovery import SAFETY
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import ModeChoice, gear_modes
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.transient.certificates import Unbalanced
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
@@ -90,7 +91,7 @@ def transient(per_harmonic: int) -> PairTransient:
     torques = model.load.torque, model.load.torque * model.pair.ratio
     drive = Drive.free(model.pair.ratio, (pinion.moment_of_inertia, wheel.moment_of_inertia), torques)
     pair = MovingPair(model, (pinion, wheel), drive, 0.0, MESH_DAMPING, damping_in_separation=True)
-    return PairTransient(pair, 0.0, 2.0 * np.pi * RPM / 60.0, SCHEME, KeptContacts(pair, POSITIONS, 1))
+    return PairTransient(pair, 0.0, MeshSpeed(RPM, model.pair.pinion.z), SCHEME, KeptContacts(pair, POSITIONS, 1))
 
 
 @dataclass(frozen=True)

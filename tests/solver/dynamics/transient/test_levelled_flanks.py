@@ -15,6 +15,7 @@ from evolvent.contact.newton.applied_compliance import AppliedCompliance
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.dynamics.modes.mode_meshes import mode_mesh
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_transient import MovingMoment, PairTransient
@@ -51,7 +52,7 @@ def moving(friction: float, rpm: float) -> PairTransient:
     drive = Drive.at_constant_speed(model.load.on, inertia, (model.load.torque, model.load.torque * model.pair.ratio))
     pair = MovingPair(model, gears, drive, 0.02, 0.5)
     kept = KeptContacts(pair, POSITIONS, 3 if friction else 1)
-    return PairTransient(pair, friction, 2.0 * np.pi * rpm / 60.0, TimeScheme(0.5), kept)
+    return PairTransient(pair, friction, MeshSpeed(rpm, model.pair.pinion.z), TimeScheme(0.5), kept)
 
 
 def first(transient: PairTransient) -> MovingMoment:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.transient.kept_contacts import ContactStore, KeptContacts
 from evolvent.dynamics.transient.pair_state import SolvedStep
 from evolvent.dynamics.transient.steady_state import until_steady
@@ -52,7 +53,7 @@ def test_long_steps_are_statics(count: int) -> None:
     """Time steps of 1e6 s each, without friction: on the same searched contacts the equilibrium of statics to 1e-10,
     for any number of modes."""
     slow = moving("spur", 0.0, 1.0, count)
-    slow = replace(slow, speed=slow.contacts.step_angle / 1e6)
+    slow = replace(slow, speed=MeshSpeed.of_period(1e6 * slow.contacts.positions, slow.pair.model.pair.pinion.z))
     frozen = moving("spur", 0.0, 1.0, 0)
     frozen = replace(frozen, speed=slow.speed, contacts=replace(frozen.contacts, store=ContactStore()))
     for one, other in zip(moments(slow, 1), moments(frozen, 1)):

@@ -33,7 +33,7 @@ def resting(friction: float = 0.0, positions: int = POSITIONS) -> tuple[PairTran
     slow = moving("spur", friction, RPM, count=0)
     case = replace(slow, contacts=KeptContacts(slow.pair, positions, slow.contacts.components))
     problem = gear_problem(spur_scene("mesh.level=quick"))
-    return case, start_from_rest(case.pair, problem, case.speed, friction)
+    return case, start_from_rest(case.pair, problem, case.speed.rad_s, friction)
 
 
 def first(case: PairTransient, start: PairState, count: int) -> list[MovingMoment]:
@@ -62,7 +62,7 @@ def test_flanks_just_touch() -> None:
     gaps = gear_contact(pair.model.bodies, stand, list(pair.model.teeth), np.inf).operator.gap
     assert abs(float(np.min(gaps))) < 1e-4
     rate = float(start.motion.velocity[-1]) * pair.lever
-    assert rate == pytest.approx(case.speed * pair.model.pair.pinion.base_radius, rel=1e-12)
+    assert rate == pytest.approx(case.speed.rad_s * pair.model.pair.pinion.base_radius, rel=1e-12)
 
 
 def test_blow_is_that_of_an_oscillator_on_the_static_force() -> None:
@@ -127,7 +127,7 @@ def test_friction_of_a_fast_start() -> None:
     friction, and the balance would be missed."""
     slow = moving("helical", 0.2, 300.0, count=0)
     case = replace(slow, contacts=KeptContacts(slow.pair, 300, slow.contacts.components))
-    start = start_from_rest(case.pair, gear_problem(helical_scene()), case.speed, 0.2)
+    start = start_from_rest(case.pair, gear_problem(helical_scene()), case.speed.rad_s, 0.2)
     found = first(case, start, 20)[1:]
     assert max(moment.mesh_force for moment in found) > 1.5 * case.pair.drive.torque / case.pair.lever
     friction = sum(moment.energies.friction for moment in found)

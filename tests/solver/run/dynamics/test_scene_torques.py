@@ -17,12 +17,12 @@ LIST = [200.0, 5.0, 100.0]
 
 def test_meshes_are_those_of_the_scenes_torque() -> None:
     """As many cells as its own run has, also with the lightest torque of a list at 5 %; torques in N·mm, ascending,
-    forces over the base radius."""
+    on a gear of base radius r cos α."""
     loads = scene_torques(spur_scene(), LIST)
     assert loads.torques == pytest.approx((8.5e3, 170e3, 340e3))
     assert flank_cells(loads.problem, Member.PINION) == flank_cells(gear_problem(spur_scene()), Member.PINION)
     assert loads.problem.mesh_torques == pytest.approx((170e3, 340e3))
-    assert loads.forces == pytest.approx([each / 70.4769 for each in loads.torques], rel=1e-5)
+    assert loads.problem.base_radius == pytest.approx(70.4769, rel=1e-5)
 
 
 @pytest.mark.parametrize(("percents", "sized"), [([5.0, 50.0], 85e3), ([150.0, 200.0], 255e3)])

@@ -38,7 +38,7 @@ def excitation(error: Floats, stiffness: float = STIFFNESS) -> MeshExcitation:
     """A constant stiffness [N/mm] on flanks with an unloaded error (n,) [mm]."""
     count, forces = len(error), np.array([LOAD, 2.0 * LOAD])
     angles, whole = 2.0 * np.pi / 50.0 * np.arange(count) / count, np.full((count, 2), stiffness)
-    return MeshExcitation(error, LoadedMesh(angles, forces, error[:, None] + forces / whole, whole))
+    return MeshExcitation(error, LoadedMesh(angles, forces, 1.0, error[:, None] + forces / whole, whole))
 
 
 def wave(count: int, order: int, amplitude: float = 2e-4) -> Floats:

@@ -174,7 +174,7 @@ def start_rows(
         for k, (moment, peak, of_error, of_force, of_peak) in enumerate(zip(case.found.beginning, *values), 1):
             still = k % len(case.static)
             yield StartRow(
-                speed_rpm=case.speed, friction=case.friction, time_s=moment.time,
+                speed_rpm=case.speed.rpm, friction=case.friction, time_s=moment.time,
                 pinion_angle_deg=float(np.degrees(own.angle[k - 1])),
                 transmission_error_um=UM * moment.result.transmission_error,
                 transmission_error_um_error=float(of_error),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.pressure.contact_cells import cells_across
@@ -21,8 +22,8 @@ UM = 1e3
 class TransientCase:
     """A speed and friction coefficient, with the statics of the same positions."""
 
-    speed: float
-    """Speed of the pinion [r/min]."""
+    speed: MeshSpeed
+    """Speed of the pinion."""
     friction: float
     """Friction coefficient μ."""
     found: MeshPeriods
@@ -35,7 +36,7 @@ class TransientCase:
     @property
     def name(self) -> str:
         """Speed and friction coefficient, as messages state them."""
-        return f"{self.speed:g} r/min, μ = {self.friction:g}"
+        return f"{self.speed.rpm:g} r/min, μ = {self.friction:g}"
 
     @property
     def results(self) -> tuple[PositionResult, ...]:

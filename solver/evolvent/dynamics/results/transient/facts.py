@@ -144,7 +144,7 @@ def transient_facts(
         steps, every = found.steps, [moment.steps for moment in (*found.moments, *found.beginning)]
         step = (found.moments[-1].time - found.moments[-2].time) / (steps.accepted / len(found.moments))
         facts.append(TransientFacts(
-            speed_rpm=case.speed, friction=case.friction, mesh_frequency_Hz=case.speed / 60.0 * model.pair.pinion.z,
+            speed_rpm=case.speed.rpm, friction=case.friction, mesh_frequency_Hz=case.speed.mesh_frequency,
             mesh_periods=found.periods, last_change=float(found.changes[-1]) if len(found.changes) else None,
             steady=found.is_steady, modes=len(frequencies), lowest_mode_Hz=lowest, natural_frequency_Hz=natural,
             natural_frequency_Hz_error=bars.natural_frequency * natural,

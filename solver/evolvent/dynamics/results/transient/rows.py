@@ -96,8 +96,8 @@ def transient_rows(
         for moment, still, peak, calm, of_error, of_force, of_peak in zip(case.found.moments, case.static, *columns):
             result, angle = moment.result, moment.result.stand.angle
             yield TransientRow(
-                speed_rpm=case.speed, friction=case.friction, pinion_angle_deg=float(np.degrees(angle)),
-                time_s=30.0 / np.pi * angle / case.speed, transmission_error_um=UM * result.transmission_error,
+                speed_rpm=case.speed.rpm, friction=case.friction, pinion_angle_deg=float(np.degrees(angle)),
+                time_s=angle / case.speed.rad_s, transmission_error_um=UM * result.transmission_error,
                 transmission_error_um_error=float(of_error), static_transmission_error_um=UM * still.transmission_error,
                 velocity_mm_per_s=moment.rate, mesh_force_N=width * moment.mesh_force,
                 mesh_force_N_error=width * float(of_force), pinion_torque_Nm=1e-3 * width * result.torques[0],
@@ -125,7 +125,7 @@ def tooth_rows(
                 angle = moving.stand.angle + tooth * pitch
                 of_force, of_peak = bars.of_tooth(angle)
                 rows.append(TransientToothRow(
-                    speed_rpm=case.speed, friction=case.friction, tooth_angle_deg=float(np.degrees(angle)),
+                    speed_rpm=case.speed.rpm, friction=case.friction, tooth_angle_deg=float(np.degrees(angle)),
                     normal_force_N=forces[0], normal_force_N_error=width * of_force, static_normal_force_N=forces[1],
                     max_pressure_MPa=peaks[0], max_pressure_MPa_error=of_peak, static_max_pressure_MPa=peaks[1],
                 ))

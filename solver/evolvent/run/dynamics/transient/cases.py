@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
-import numpy as np
 from mpi4py import MPI
 
 from evolvent.contact.transient.time_schemes.time_scheme import TimeScheme
 from evolvent.dynamics.modes.ring_modes import harmonics
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.dynamics.transient.back_flanks import require_backlash
 from evolvent.dynamics.transient.certificates import certify_motion
@@ -116,7 +116,7 @@ class PairCases:
         model = replace(gears.model, deflected=pitch.solved.deflected)
         static = Statics(pitch.scene, tuple(pitch.solved.by_friction), pitch.timings)
         progress.stage(MODES, sum(len(harmonics(gear.z)) for gear in problem.pair.gears))
-        sampled = max(section.speeds_rpm) / 60.0 * problem.pair.pinion.z * scene.sweep.positions  # Hz
+        sampled = MeshSpeed(max(section.speeds_rpm), problem.pair.pinion.z).mesh_frequency * scene.sweep.positions  # Hz
         count, density = section.modes_per_harmonic, dynamics.density_kg_m3
         found = partial(resolved_modes, problem, model, density, sampled, count, on.least)
         modes = together(call.comm, lambda: found(lambda: progress.advance(more=True)))
@@ -125,10 +125,11 @@ class PairCases:
         return PairCases(scene, problem, pair, static, settings, call.comm, progress)
 
     @property
-    def tasks(self) -> list[tuple[float, int]]:
-        """Speed [r/min] and index of the friction coefficient of each case."""
-        count = len(self.scene.contact.friction)
-        return [(speed, index) for speed in transient_section(self.scene).speeds_rpm for index in range(count)]
+    def tasks(self) -> list[tuple[MeshSpeed, int]]:
+        """Speed and index of the friction coefficient of each case."""
+        count, teeth = len(self.scene.contact.friction), self.problem.pair.pinion.z
+        speeds = [MeshSpeed(speed, teeth) for speed in transient_section(self.scene).speeds_rpm]
+        return [(speed, index) for speed in speeds for index in range(count)]
 
     def loaded(self) -> list[MovingPair]:
         """The pair under its loads at each friction coefficient."""
@@ -202,7 +203,7 @@ class PairCases:
     def _starts(self, contacts: KeptContacts) -> Callable[[int, PairTransient], PairState]:
         """Function that makes the initial state of a case. Raises NotConverged, SearchError."""
         if self._from_rest:
-            return lambda _, case: start_from_rest(case.pair, self.problem, case.speed, case.friction)
+            return lambda _, case: start_from_rest(case.pair, self.problem, case.speed.rad_s, case.friction)
         statics = quasi_static_starts(self.pair, contacts.step_angle, list(self.scene.contact.friction))
         return lambda number, case: statics[self.tasks[number][1]].at(case.time_step)
 
@@ -215,7 +216,7 @@ class PairCases:
         scheme = TimeScheme(transient_section(self.scene).spectral_radius)
         friction = self.scene.contact.friction[index]
         pair = loaded_as_static(self.pair, self.static.positions[index])
-        return PairTransient(pair, friction, 2.0 * np.pi * speed / 60.0, scheme, contacts, self._division(contacts))
+        return PairTransient(pair, friction, speed, scheme, contacts, self._division(contacts))
 
     def _division(self, contacts: KeptContacts) -> DividedSteps:
         """Rule by which steps between two positions are divided. Between positions that are closer than the scene's,

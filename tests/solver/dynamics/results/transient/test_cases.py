@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.results.transient.cases import TransientCase, case_pressures
 from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.gears.gear_model import GearModel
@@ -30,7 +31,8 @@ def positions(model: GearModel, torque: float) -> tuple[PositionResult, ...]:
 def case(calm: tuple[PositionResult, ...], begun: tuple[PositionResult, ...] = ()) -> TransientCase:
     """A motion without inertia, with these positions from rest."""
     moments, beginning = (tuple(SimpleNamespace(result=each) for each in row) for row in (calm, begun))
-    return TransientCase(60.0, 0.0, cast(MeshPeriods, SimpleNamespace(moments=moments, beginning=beginning)), calm, 1.0)
+    found = cast(MeshPeriods, SimpleNamespace(moments=moments, beginning=beginning))
+    return TransientCase(MeshSpeed(60.0, 50), 0.0, found, calm, 1.0)
 
 
 def test_a_blow_widens_the_tip_edge_zones() -> None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
+from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
@@ -114,7 +114,7 @@ def _solved(call: Call, scene: Scene, part: str) -> SolvedLoad:
 
 def _rows(run: RunData) -> Iterator[LossRow]:
     """Losses at each friction coefficient under one torque."""
-    power = run.scene.hertz_estimate().pinion_torque * 1e-3 * 2.0 * math.pi * SPEED / 60.0
+    power = 1e-3 * run.scene.hertz_estimate().pinion_torque * MeshSpeed(SPEED, run.pair.pinion.z).rad_s  # W
     for index, row in enumerate(friction_rows(run)):
         loss, error = row.loss_percent, run.errors.bar("loss_percent", index)
         watts = power * loss / 100.0, power * error / 100.0

@@ -31,7 +31,7 @@ from evolvent.results.drawing.picture_files import draw
 from evolvent.results.engagement import engagement
 from evolvent.run.call import Options
 from evolvent.run.compute import compute
-from evolvent.run.kinds.run import Run
+from evolvent.run.kinds.wear import Wear
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent.wear.results.mesh_passage import (
@@ -179,7 +179,7 @@ def main(
         worn = worn_scene(scene, quick, setting or [])
     except SceneError as error:
         raise typer.BadParameter(str(error)) from error
-    compute(Run.of(worn), out, Options(resume=True, quiet=quick))
+    compute(Wear.of(worn), out, Options(resume=True, quiet=quick))
     if MPI.COMM_WORLD.rank:
         return
     study = read_worn(out)

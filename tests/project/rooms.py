@@ -172,8 +172,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.kinds": (
         "meshes.mesh", "meshes.gears", "fem.parallel", "gears", "gears.meshing", "gears.pressure",
-        "gears.solution", "scene", "scene.schema", "results.*", "dynamics.*", "strength.*", "wear.results", "run",
-        "run.strength", "run.dynamics", "run.dynamics.transient",
+        "gears.solution", "scene", "scene.schema", "results.*", "check", "dynamics.*", "strength.*", "wear.results",
+        "run", "run.strength", "run.dynamics", "run.dynamics.transient",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

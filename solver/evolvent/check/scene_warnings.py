@@ -15,6 +15,7 @@ from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings, tip_edge_warnings
 from evolvent.gears.meshing.undercut import undercut_warnings
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, few_cells
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -25,6 +26,11 @@ from evolvent.scene.vibration_limits import doubtful
 def scene_warnings(scene: Scene) -> tuple[str, ...]:
     """The warnings on a scene, one sentence each."""
     return tuple(_expected(scene))
+
+
+def flank_warnings(problem: GearProblem) -> Iterator[str]:
+    """Warnings on flanks and tips, one sentence each, before anything is computed."""
+    yield from (*undercut_warnings(problem), *modification_warnings(problem), *tip_edge_warnings(problem))
 
 
 def _expected(scene: Scene) -> Iterator[str]:
@@ -53,8 +59,6 @@ def _expected(scene: Scene) -> Iterator[str]:
         yield from vibration_warnings(scene)
     if scene.dynamics is not None or scene.transient is not None:
         yield from (f"{each}." for each in doubtful(scene.planned_vibration()))
-    yield from undercut_warnings(problem)
-    yield from modification_warnings(problem)
-    yield from tip_edge_warnings(problem)
+    yield from flank_warnings(problem)
     if not is_two_level(problem):  # coarse sectors have no modifications
         yield from folding_warnings(problem, sector_resolutions(problem))

@@ -47,7 +47,7 @@ def test_every_computing_command_says_it(
     percent = [f"--percent={PERCENT[command]}"] if command in PERCENT else []
     out = tmp_path / "out"
     assert main([command, *arguments(tmp_path / "lead.csv"), "--out", str(out), "--quiet", *percent]) == Exit.DONE
-    assert f"evolvent: warning: {SAID}" in capsys.readouterr().err
+    assert f"warning: {SAID}" in capsys.readouterr().err
     if command == "run":
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
         assert any(SAID in sentence for sentence in summary["warnings"])

@@ -14,9 +14,9 @@ from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.iso_dynamic_factor import method_b
 from evolvent.run.dynamics.speeds import map_list, sweep_list
 from evolvent.run.dynamics.vibration import accuracy
-from evolvent.run.kinds.excitation import Excitation
 from evolvent.run.kinds.strength import NO_DEEP_TEETH
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.part_torque import listed_percents
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent.scene.skips import wanted_output
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
@@ -179,8 +179,8 @@ def _output(scene: Scene) -> object:
 
 
 def _torques(scene: Scene) -> object:
-    """Torques of an excitation."""
-    return Excitation.of(scene).loads.torques
+    """Torques of a list."""
+    return listed_percents(scene)
 
 
 CONSEQUENCES: tuple[Callable[[Scene], object], ...] = _gears, _output, _torques, _fatigue, _vibration, overview, _roots

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
+from evolvent.check.scene_warnings import flank_warnings
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.shared_gears import SharedGears
@@ -20,6 +21,7 @@ from evolvent.run.call import Call
 from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.kept_pitch import KeptPitch, Meshes, companion_of, kept_pitch
+from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
 from evolvent.scene.scene import Scene
@@ -91,6 +93,10 @@ class Losses(Computation[list[SolvedLoad]]):
         torques = [self.scene.load.torque_Nm * percent / 100.0 for percent in sorted(self.scene.load.percents)]
         one = with_percents(self.scene, ())
         return [under_torque(one, torque, (torques[0], torques[-1])) for torque in torques]
+
+    def warnings(self) -> Iterator[str]:
+        """Warnings on charts, flanks and tips."""
+        yield from (*chart_warnings(self.scene), *flank_warnings(gear_problem(self.scene)))
 
     def solve(self, call: Call) -> list[SolvedLoad]:
         """Both pitches under each torque, on gears that are condensed once, see `Computation.solve`."""

@@ -8,14 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
+from evolvent.check.scene_warnings import flank_warnings
 from evolvent.dynamics.body_sentences import bodies_said
 from evolvent.dynamics.figures.all import OPERATION_PICTURE
 from evolvent.dynamics.operating_point import OperatingPoint, Operation
 from evolvent.dynamics.operation_figures import OperationFigures, operation_warnings
 from evolvent.dynamics.results.operation import OPERATION_TABLES, operation_tables
 from evolvent.dynamics.under_mesh_force import UnderMeshForce
-from evolvent.gears.meshing.modifications import modification_warnings, tip_edge_warnings
-from evolvent.gears.meshing.undercut import undercut_warnings
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.error_bar_data import read_error_bars
@@ -95,10 +94,9 @@ class Run(Computation[SolvedRun]):
 
     def warnings(self) -> Iterator[str]:
         """Warnings on flanks and tips, and on a vibration that is taken out of its range."""
-        problem = gear_problem(self.scene)
         if self.scene.dynamics is not None and self.scene.dynamics.operating_rpm is not None:
             yield from doubtful(self.scene.planned_vibration())
-        yield from (*undercut_warnings(problem), *modification_warnings(problem), *tip_edge_warnings(problem))
+        yield from flank_warnings(gear_problem(self.scene))
 
     def solve(self, call: Call) -> SolvedRun:
         """Positions, error bars and deformation, see `Computation.solve`."""

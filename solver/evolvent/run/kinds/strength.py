@@ -9,8 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
-from evolvent.gears.meshing.modifications import modification_warnings, tip_edge_warnings
-from evolvent.gears.meshing.undercut import undercut_warnings
+from evolvent.check.scene_warnings import flank_warnings
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.tables.run_warnings import RELIEVE
 from evolvent.run.call import Call
@@ -78,9 +77,8 @@ class Strength(Computation[SolvedRoots]):
 
     def warnings(self) -> Iterator[str]:
         """Warnings on charts, formulas, flanks and tips."""
-        problem = gear_problem(self.scene)
         yield from (*chart_warnings(self.scene), *formula_warnings(self._loads))
-        yield from (*undercut_warnings(problem), *modification_warnings(problem), *tip_edge_warnings(problem))
+        yield from flank_warnings(gear_problem(self.scene))
 
     def solve(self, call: Call) -> SolvedRoots:
         """Roots on both kinds of meshes, see `Computation.solve`."""

@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.results.archive.archive import Archive
-from evolvent.run.kinds.run import Run
+from evolvent.run.kinds.wear import Wear
 from evolvent.wear import Archard, BlockSettings, wear_study, wearing_pair
 from evolvent.wear.results.archive import read_checkpoint
 from tests.support.computing.quiet import quietly
@@ -26,7 +26,7 @@ def test_wear_study_of_the_api_equals_that_of_a_run(tmp_path: Path) -> None:
     the same blocks. Exact: the same blocks, and the same depths at all flank nodes, to
     rounding."""
     scene = spur_scene(*WEAR)
-    quietly(Run.of(scene), tmp_path)
+    quietly(Wear.of(scene), tmp_path)
     expected = read_checkpoint(Archive(tmp_path, scene))
     assert expected is not None
     pair = wearing_pair(he_problem(), Archard(1e-10, 3e-10), positions=4, comm=MPI.COMM_SELF)

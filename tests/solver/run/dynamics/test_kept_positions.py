@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.support.quiet import quietly
 
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Store, arrays_bytes
@@ -16,6 +15,7 @@ from evolvent.run.dynamics.kept_positions import NAMES, KeptPositions, another
 from evolvent.run.kinds import dynamics
 from evolvent.run.kinds.dynamics import TABLES, Dynamics
 from evolvent.scene.scene import load_scene
+from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import spur_scene
 
 

@@ -77,6 +77,7 @@ def test_gear_demo(run_script: RunScript, tmp_path: Path, ranks: int) -> None:
     assert len(list((tmp_path / "pictures").glob("*.png"))) >= 10
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_wear_demo(run_script: RunScript, tmp_path: Path) -> None:
     """Status 0, a table of at least ten rows and a picture; the demo itself asserts what Archard's law asks for."""

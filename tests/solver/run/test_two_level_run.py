@@ -135,6 +135,7 @@ def test_the_companion_is_twice_as_coarse_in_levels(out: Path) -> None:
         assert len(coarse.points) < 0.4 * len(fine.points)
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 @pytest.mark.mpi
 def test_ranks_and_resumed_runs_agree(out: Path, run_script: RunScript, tmp_path: Path) -> None:

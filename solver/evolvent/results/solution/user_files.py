@@ -26,5 +26,5 @@ def save_picture(path: Path | str, png: bytes) -> Path:
 def _ending(path: Path | str, wanted: str) -> Path:
     path = Path(path)
     if path.suffix.lower() != wanted:
-        refuse("path", f"the name of a file that ends in {wanted}", str(path), f"write {path.with_suffix(wanted)}")
+        refuse("path", f"the name of a file that ends in {wanted}", path.name, f"write {path.with_suffix(wanted)}")
     return path

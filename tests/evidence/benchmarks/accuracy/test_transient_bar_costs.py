@@ -24,6 +24,7 @@ QUICK = CostCase("quick", "a case", "he2022_dynamics.toml", (
 TWICE = CostRow("A pair", 10.0, 20.0)
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_both_runs_differ_by_their_error_bars(tmp_path: Path) -> None:
     """He's pair in six positions at one speed: one row, of a run whose figures have no error bars and of one whose

@@ -62,6 +62,7 @@ def test_slices_are_compared_place_by_place() -> None:
     assert AccuracyRow("a", "b", 0.01, math.nan).met and not AccuracyRow("a", "b", 0.01, 0.005).met
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_levels_are_compared_with_the_same_cells() -> None:
     """A narrow, coarse pair with crowning, relief and misalignment: all that is measured is there, and the peaks are

@@ -45,6 +45,7 @@ def test_random_scenes_converge(plane: bool | None, seeds: range | tuple[int, ..
     assert not wrong, wrong
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_a_random_scene_converges_on_flanks_in_levels(monkeypatch: pytest.MonkeyPatch) -> None:
     """A scene in space that asks for one mesh of order 1: its gears have levels, and it converges and balances."""

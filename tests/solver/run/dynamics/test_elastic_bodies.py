@@ -42,6 +42,7 @@ def peak_to_peak(folder: Path) -> list[float]:
     return found
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_vibration_is_that_of_the_gears_with_their_modes(tmp_path: Path) -> None:
     """Problem: with rigid bodies the peak-to-peak transmission error was a fifth and more off that with natural modes

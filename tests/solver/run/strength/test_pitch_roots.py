@@ -30,6 +30,7 @@ def strains(*settings: str) -> Floats:
     return np.array(found)
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_wide_gears_have_the_strain_of_their_section_at_mid_face() -> None:
     """Zhang's pair with faces of 60 mm under as much torque per mm: 1 %. Exact for infinite ones."""

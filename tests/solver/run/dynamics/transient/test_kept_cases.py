@@ -82,6 +82,7 @@ def test_another_scene_is_named_by_its_keys(tmp_path: Path) -> None:
     assert "found that of another one; --resume" in another(wanted, path)
 
 
+@pytest.mark.evidence
 def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Killed in the second of two cases and resumed: statics and the first case are not computed again, and the tables
     are those of a call that was not stopped; also where the companion is killed in its third motion of four, and when
@@ -211,6 +212,7 @@ def test_a_case_that_cannot_be_read_is_refused(out: Path, tmp_path: Path) -> Non
         cases.read()
 
 
+@pytest.mark.evidence
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
 def test_ranks_go_on(run_script: RunScript, tmp_path: Path, ranks: int) -> None:

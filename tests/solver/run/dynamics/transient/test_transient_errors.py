@@ -56,6 +56,7 @@ def hits(tried: Path, tmp_path_factory: pytest.TempPathFactory) -> list[HitRow]:
     return list(hit_rows("", tried, folder))
 
 
+@pytest.mark.evidence
 def test_nine_in_ten_bars_hold_the_true_error(hits: list[HitRow], tried: Path) -> None:
     """Near a superharmonic resonance and at the resonance, where the teeth part and meet: all three figures of both
     speeds, and nine in ten values of the columns."""

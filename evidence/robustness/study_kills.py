@@ -102,7 +102,8 @@ def killed_at_random(folder: Path, kills: int, seed: int) -> Outcome:
             if GIVEN_UP in said:
                 outcome.given_up += 1
             elif program.returncode != -signal.SIGKILL:
-                print(f"ended with status {program.returncode}: {said.strip()[-NAMED:]}", flush=True)
+                if program.returncode:
+                    print(f"ended with status {program.returncode}: {said.strip()[-NAMED:]}", flush=True)
                 outcome.hangs += program.poll() is None
                 outcome.differ += program.poll() != 0 or bool(differing(rows(out), wanted))
                 outcome.ends += 1

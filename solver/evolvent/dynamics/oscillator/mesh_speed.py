@@ -25,7 +25,7 @@ class MeshSpeed:
     @staticmethod
     def of_period(period: float, teeth: int) -> MeshSpeed:
         """Speed at a mesh period [s]."""
-        return MeshSpeed(float(speeds_to_periods(period, teeth)), teeth)
+        return MeshSpeed(MINUTE / (period * teeth), teeth)
 
     @staticmethod
     def of_frequency(frequency: float, teeth: int) -> MeshSpeed:
@@ -40,7 +40,7 @@ class MeshSpeed:
     @property
     def mesh_period(self) -> float:
         """Time from one tooth to the next [s]."""
-        return float(speeds_to_periods(self.rpm, self.teeth))
+        return MINUTE / (self.rpm * self.teeth)
 
     @property
     def mesh_frequency(self) -> float:

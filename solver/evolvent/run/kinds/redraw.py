@@ -41,11 +41,15 @@ def _finished(out: Path) -> Computation[object]:
     if not command:
         found = "no results in it" if os.path.isdir(out) else "no such directory"
         raise _nothing_to_draw(out, found, f"run `evolvent run SCENE.toml --out {out}` first")
+    again = f"run `evolvent {command} SCENE.toml --out {out} --resume` first"
+    if not (out / "scene.toml").is_file():
+        found = f"results of `evolvent {command}` without their scene.toml, as earlier versions left them"
+        raise _nothing_to_draw(out, found, again)
     scene = kept_scene(out / "scene.toml")
     what: Computation[object] = kind_of(command, scene).load().of(scene)
     if not (out / what.outputs.tables[0]).is_file():
         found = f"results of `evolvent {command}`, but no {what.outputs.tables[0]}"
-        raise _nothing_to_draw(out, found, f"run `evolvent {command} SCENE.toml --out {out} --resume` first")
+        raise _nothing_to_draw(out, found, again)
     return what
 
 

@@ -74,6 +74,14 @@ def test_unfinished_command_is_named(tmp_path: Path, kind: Kind) -> None:
         plot_folder(tmp_path)
 
 
+def test_folder_of_an_earlier_version_is_named(tmp_path: Path) -> None:
+    """Root strength without scene.toml: the command that leaves one."""
+    RunFolder(tmp_path).write_text("strength.csv", "results")
+    remedy = f"run `evolvent strength SCENE.toml --out {tmp_path} --resume` first"
+    with pytest.raises(FolderError, match=rf"without their scene\.toml.*{re.escape(remedy)}"):
+        plot_folder(tmp_path)
+
+
 @pytest.mark.parametrize(("name", "remedy"), [
     ("study.json", "`evolvent study STUDY.toml --out {out}` draws its pictures again"),
     ("notes.txt", "run `evolvent run SCENE.toml --out {out}` first"),

@@ -109,6 +109,8 @@ class LocalWorkers:
             return []
         if worker.order.deaths < DEATHS:
             worker.group.again(replace(worker.order, deaths=worker.order.deaths + 1))
+            if worker.group not in self._groups:  # it had left the queue, with all of its scenes handed out
+                self._groups.appendleft(worker.group)
             return []
         reason = f"the worker process died each time that it computed this scene, at last {how}: too little memory?"
         return worker.group.given_up(worker.order, reason)

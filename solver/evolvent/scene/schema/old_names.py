@@ -53,7 +53,7 @@ def new_names(given: Mapping[str, Any], warn: Warn) -> dict[str, Any]:
             found, remedy = f"{entry.new}, the new name of the same key, beside it", f"delete {name}"
             raise SceneError([InputProblem(name, found, "one name of a key", remedy)])
         new_value = renamed[entry.new] = _exchanged(value, entry.values)
-        if new_value != value:
+        if shown(new_value) != shown(value):  # as text: NaN is not equal to itself
             warn(f"{name} = {shown(value)} is the old spelling of {entry.new} = {shown(new_value)}.")
         elif name != entry.new:
             warn(f"{name} is the old name of {entry.new}.")

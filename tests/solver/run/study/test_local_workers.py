@@ -59,6 +59,26 @@ def test_a_worker_that_dies_while_it_starts(
     assert {record.status for record in found} == {"done"} and len(started) == 3
 
 
+def test_a_worker_that_dies_at_the_last_scene(tasks: list[SceneTask], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Killed once no other scene is to be handed out: the scene is computed by the process that takes its place. Once,
+    it was lost, and the study ended as if it were whole."""
+    given: list[Order] = []
+
+    class Killed(_Worker):
+        def give(self, order: Order, group: _Group) -> None:
+            given.append(order)
+            if len(given) == len(tasks):
+                self._process.kill()
+                self._process.wait()
+            super().give(order, group)
+
+    monkeypatch.setattr(local_workers, "_Worker", Killed)
+    with closing(LocalWorkers(1)) as workers:
+        found = list(workers.finished(own(tasks)))
+    assert {record.name for record in found} == {task.name for task in tasks}
+    assert {record.status for record in found} == {"done"} and len(given) == len(tasks) + 1
+
+
 def test_workers_that_cannot_start(
     workers: LocalWorkers, tasks: list[SceneTask], monkeypatch: pytest.MonkeyPatch
 ) -> None:

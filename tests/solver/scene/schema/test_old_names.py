@@ -18,7 +18,7 @@ from evolvent.run.study.plan.study_file import load_study
 from evolvent.run.study.plan.study_scenes import study_scenes
 from evolvent.scene.scene import Scene, SceneError, kept_scene, scene_from_text, scene_from_values
 from evolvent.scene.schema.errors import keys_of
-from evolvent.scene.schema.old_names import RENAMED, unsaid
+from evolvent.scene.schema.old_names import RENAMED, new_names, unsaid
 from tests.support.running.study_cases import HEAD, VERSION, written
 
 PAIR = """
@@ -184,3 +184,10 @@ def test_new_names_are_keys() -> None:
     """Each new name is a key of the scene, no old name is."""
     keys = keys_of(Scene)
     assert all(each.new in keys and each.old not in keys for each in RENAMED)
+
+
+def test_nan_is_no_old_spelling() -> None:
+    """NaN is not equal to itself: under its present name a key warns of nothing, and the value is refused later."""
+    said: list[str] = []
+    assert list(new_names({"exact.parts": float("nan")}, said.append)) == ["exact.parts"]
+    assert said == []

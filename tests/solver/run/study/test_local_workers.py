@@ -7,7 +7,9 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import closing
+from multiprocessing.connection import wait
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -63,6 +65,7 @@ def test_a_worker_that_dies_at_the_last_scene(tasks: list[SceneTask], monkeypatc
     """Killed once no other scene is to be handed out: the scene is computed by the process that takes its place. Once,
     it was lost, and the study ended as if it were whole."""
     given: list[Order] = []
+    heard_nothing: list[bool] = []
 
     class Killed(_Worker):
         def give(self, order: Order, group: _Group) -> None:
@@ -72,7 +75,15 @@ def test_a_worker_that_dies_at_the_last_scene(tasks: list[SceneTask], monkeypatc
                 self._process.wait()
             super().give(order, group)
 
+    def late(connections: list[Any]) -> list[Any]:
+        """What is heard; of the death once the queue has been looked at again, as after an answer of another one."""
+        if len(given) == len(tasks) and not heard_nothing:
+            heard_nothing.append(True)
+            return []
+        return wait(connections)
+
     monkeypatch.setattr(local_workers, "_Worker", Killed)
+    monkeypatch.setattr(local_workers, "wait", late)
     with closing(LocalWorkers(1)) as workers:
         found = list(workers.finished(own(tasks)))
     assert {record.name for record in found} == {task.name for task in tasks}

@@ -171,7 +171,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "check", "run",
     ),
     "run.kinds": (
-        "meshes.mesh", "meshes.gears", "fem.parallel", "gears", "gears.meshing", "gears.pressure",
+        "meshes.mesh", "meshes.gears", "fem.parallel", "gears", "gears.pressure",
         "gears.solution", "scene", "scene.schema", "results.*", "check", "dynamics.*", "strength.*", "wear.results",
         "run", "run.strength", "run.dynamics", "run.dynamics.transient",
     ),

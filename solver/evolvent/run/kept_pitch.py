@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 
 from evolvent.gears.gear_model import GearModel, Mesher, Preparation
 from evolvent.gears.meshed_gear import MeshedGear, meshed_gear
@@ -19,10 +20,8 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, i
 from evolvent.results.archive.archive import COARSE, Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
-from evolvent.results.error_bars.estimation import Companion
 from evolvent.results.run_data import RunData, run_data
 from evolvent.run.call import Call
-from evolvent.run.companion import Attempt
 from evolvent.run.progress import ERROR_BARS, POSITIONS
 from evolvent.scene.gear_problem import gear_options, gear_problem, shares_gears
 from evolvent.scene.scene import Scene
@@ -79,11 +78,6 @@ class KeptPitch:
         return run_data(self.scene, self.archive.read_gears(), self.archive.read_positions(self.scene.gear_pair()))
 
 
-def companion_of(coarse: Attempt[KeptPitch]) -> Companion:
-    """The coarse companion of a run with its figures. On rank 0 alone. Raises ArchiveError."""
-    return Companion(None if coarse.value is None else coarse.value.run_data(), coarse.reason, coarse.seconds)
-
-
 @dataclass(frozen=True)
 class ResumePoint:
     """Positions that an earlier call has completed, and the state of its sweep."""
@@ -127,6 +121,13 @@ def resume_point(call: Call, scene: Scene, meshes: Meshes) -> ResumePoint:
     return ResumePoint() if state is None else ResumePoint(tuple(archive.read_sweep(pair)), state)
 
 
+def require_resumable(scene: Scene, folder: Path, command: str, part: str = "") -> None:
+    """Raises ArchiveError where stored positions belong neither to a scene nor to it on deflected flanks."""
+    archives = [Archive(folder, each, command, part) for each in (with_deflected_flanks(scene), scene)]
+    if not any(archive.holds_scene() for archive in archives):
+        archives[-1].read_state(scene.gear_pair())
+
+
 def scene_to_solve(call: Call, scene: Scene, meshes: Meshes) -> Scene:
     """The scene, on deflected flanks where the call to be resumed had switched to them. On rank 0 alone."""
     deflected = with_deflected_flanks(scene)
@@ -162,7 +163,7 @@ class _Sweep:
         """Completed positions, then the missing ones, as they are solved. Collective."""
         yield from self.completed
         if self.resume.is_end:  # the gears need not be condensed
-            self.record = self.call.on_first(self._checked_meshes)
+            self.record = self.call.on_first(self._reopen)
             return
         if self.completed:
             self.call.log.info("resumed after %d positions", len(self.completed))
@@ -231,11 +232,9 @@ class _Sweep:
         if not self.completed:
             self.archive.write_gears(record.shapes)
 
-    def _checked_meshes(self) -> MeshRecord:
-        """The meshes of the scene. Raises ArchiveError where the stored positions belong to other meshes."""
-        problem = self.meshes.problem(self.scene)
-        record = MeshRecord.of([meshed_gear(problem, member, self.meshes.mesh) for member in Member])
-        self.archive.check_gears(record.shapes)
+    def _reopen(self) -> MeshRecord:
+        """Goes on in a folder with all positions. Raises ArchiveError where they belong to other meshes."""
+        record = checked_meshes(self.meshes.problem(self.scene), self.archive, self.meshes.mesh)
         if not self.meshes.part:
             self.call.begin(self.scene, resumed=True)
             self.call.log.info("resumed after all of %d positions", len(self.completed))
@@ -252,6 +251,13 @@ class _Sweep:
         """Wall time since `begin`: whatever was not preparation was solving."""
         seconds = time.perf_counter() - begin
         return replace(self.preparing, positions=seconds - self.preparing.total, total=seconds)
+
+
+def checked_meshes(problem: GearProblem, archive: Archive, mesh: Mesher = run_mesh) -> MeshRecord:
+    """The meshes of a problem. Raises ArchiveError where the stored positions belong to other meshes."""
+    record = MeshRecord.of([meshed_gear(problem, member, mesh) for member in Member])
+    archive.check_gears(record.shapes)
+    return record
 
 
 def timings_of(preparation: Preparation) -> Timings:

@@ -10,7 +10,7 @@ from functools import partial
 from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.operation_figures import operation_warnings
 from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
-from evolvent.gears.meshed_gear import MeshedGear, meshed_gear
+from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.solution.certificates import certify, certify_pitch
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.archive import Archive
@@ -20,7 +20,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.run_data import run_data
 from evolvent.results.tables.tables import summary, write_tables
 from evolvent.run.call import Call
-from evolvent.run.kept_pitch import timings_of
+from evolvent.run.kept_pitch import checked_meshes, timings_of
 from evolvent.run.output import facts_of
 from evolvent.run.progress import CYCLES
 from evolvent.scene.gear_problem import gear_problem
@@ -51,7 +51,7 @@ def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tu
     if kept is not None:
         call.log.info("resumed after %.6g of %.6g cycles", kept.cycles, wear.cycles)
         if kept.cycles >= wear.cycles:
-            meshes = call.on_first(lambda: _checked_meshes(scene, archive))
+            meshes = call.on_first(lambda: checked_meshes(gear_problem(scene), archive))
             call.on_first(lambda: call.begin(scene, resumed=True))
             return meshes, Timings()
     preparation = call.gears(gear_problem(scene))
@@ -73,14 +73,6 @@ def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tu
     for sentence in operation_warnings(stage.vibrations):
         call.log.warning(sentence)
     return meshes, _timings(preparation, time.perf_counter() - begin)
-
-
-def _checked_meshes(scene: Scene, archive: Archive) -> MeshRecord:
-    """The meshes of the scene. Raises ArchiveError where the stored results belong to other meshes."""
-    problem = gear_problem(scene)
-    meshes = MeshRecord.of([meshed_gear(problem, member) for member in Member])
-    archive.check_gears(meshes.shapes)
-    return meshes
 
 
 def _timings(preparation: Preparation, seconds: float) -> Timings:

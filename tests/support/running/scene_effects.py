@@ -14,7 +14,6 @@ from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.iso_dynamic_factor import method_b
 from evolvent.run.dynamics.speeds import map_list, sweep_list
 from evolvent.run.dynamics.vibration import accuracy
-from evolvent.run.kinds.strength import NO_DEEP_TEETH
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents
 from evolvent.scene.scene import Scene, scene_from_text
@@ -22,6 +21,7 @@ from evolvent.scene.skips import wanted_output
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads
 from evolvent.strength.results.tables import formula_rows
+from evolvent.strength.solution.root_stress import NO_DEEP_TEETH
 from evolvent.strength.standard.root_stress import RootLoad
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member

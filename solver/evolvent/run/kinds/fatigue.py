@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 from evolvent.gears.pressure.contact_cells import coarse_contact
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
-from evolvent.results.error_bars.estimation import estimated_errors
 from evolvent.results.mesh_facts import cells_across
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import about_spacing
 from evolvent.run.call import Call
-from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
-from evolvent.run.kept_pitch import COMPANION, STORED, KeptPitch, companion_of, kept_pitch
+from evolvent.run.kept_pitch import STORED
+from evolvent.run.solved_pitches import SolvedPitches, companion_of, solved_pitches
 from evolvent.run.strength.fatigue_lines import fatigue_lines
 from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.skips import wanted_output
-from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
+from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, fatigue_of_both
 from evolvent.strength.fatigue.flank_loads import FlankLoads, LoadedPosition
 from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS, fatigue_facts, warnings_of
 from evolvent.strength.results.fatigue_rows import FATIGUE, FATIGUE_DEPTH, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_SECTION
@@ -31,16 +30,6 @@ from evolvent.strength.results.friction_fatigue import FrictionFatigue, zone_end
 from evolvent.strength.results.pictures import FATIGUE_PICTURE
 
 TABLES = FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH, FATIGUE_SECTION, FATIGUE_FACTS
-
-
-@dataclass(frozen=True)
-class SolvedPitches:
-    """The pitch of a scene, and that of its coarse companion."""
-
-    fine: KeptPitch
-    """Pitch on the meshes of the scene."""
-    coarse: Attempt[KeptPitch]
-    """Pitch on the meshes of the error bars."""
 
 
 @dataclass(frozen=True)
@@ -55,15 +44,12 @@ class Fatigue(Computation[SolvedPitches]):
 
     def solve(self, call: Call) -> SolvedPitches:
         """Both pitches, see `Computation.solve`."""
-        fine = kept_pitch(call, self.scene)
-        return SolvedPitches(fine, call.companion(self.scene, lambda: kept_pitch(call, fine.scene, COMPANION)))
+        return solved_pitches(call, self.scene)
 
     def results(self, call: Call, solved: SolvedPitches) -> Results:
         """Tables of the criteria, and warnings where figures do not hold."""
-        run, companion = solved.fine.run_data(), companion_of(solved.coarse)
-        beside = companion.run
-        if wanted_output(self.scene).error_bars:
-            run = replace(run, errors=estimated_errors(run, companion))
+        companion = companion_of(solved.coarse)
+        run, beside = solved.run_data(companion), companion.run
         found = [_fatigue(run, k, run.errors.bar("max_pressure_MPa", k), beside) for k in range(len(run.frictions))]
         facts = [
             fatigue_facts(run.pair, each, _positions(run, k), run.inner_path, _materials(run))
@@ -77,8 +63,7 @@ class Fatigue(Computation[SolvedPitches]):
         said = [ON_DEFLECTED] if solved.fine.scene != self.scene else []
         said += [run.errors.missing] if wanted_output(self.scene).error_bars and run.errors.missing else []
         said += [*_about(run), *(sentence for pair in zip(facts, found) for sentence in warnings_of(*pair))]
-        timings = replace(solved.fine.timings, error_bars=solved.coarse.seconds)
-        return Results(solved.fine.scene, tables, said, timings=timings)
+        return Results(solved.fine.scene, tables, said, timings=solved.timings)
 
     def lines(self, out: Path) -> Iterable[str]:
         """Key figures of fatigue.csv."""
@@ -116,10 +101,7 @@ def _flanks(run: RunData, index: int, inner: tuple[float, float]) -> tuple[Flank
     """Fatigue of the flanks of pinion and wheel. inner: roll distances [mm] between the tip-edge zones."""
     section, friction = _section(run), run.frictions[index]
     loads = FlankLoads.joined([each.loads(inner) for each in _positions(run, index)])
-    pinion, wheel = _materials(run)
-    first = flank_fatigue(loads, friction, section.depths, pinion)
-    # both flanks bear the same tractions
-    return first, first if wheel == pinion else flank_fatigue(loads, friction, section.depths, wheel)
+    return fatigue_of_both(loads, friction, section.depths, _materials(run))
 
 
 def _materials(run: RunData) -> tuple[FatigueMaterial, FatigueMaterial]:

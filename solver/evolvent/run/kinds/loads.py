@@ -7,19 +7,18 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from evolvent.gears.shared_gears import SharedGears
-from evolvent.results.archive.archive import Archive
 from evolvent.results.figures.loads_picture import LOADS_PICTURE
 from evolvent.results.tables.load_table import LOADS, RUNS, load_results
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.compute import compute
 from evolvent.run.folder_checks import check_folder
+from evolvent.run.kept_pitch import require_resumable
 from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
-from evolvent.scene.skips import with_deflected_flanks
 
 
 @dataclass(frozen=True)
@@ -69,9 +68,8 @@ class Loads(Computation[None]):
         for name, run in self.runs.items():
             folder = call.folder.out / name
             check_folder(run, folder, call.options)
-            archives = [Archive(folder, each, self.command) for each in (with_deflected_flanks(run.scene), run.scene)]
-            if call.resume and not any(archive.holds_scene() for archive in archives):
-                archives[-1].read_state(run.scene.gear_pair())
+            if call.resume:
+                require_resumable(run.scene, folder, self.command)
 
 
 def _folder(percent: float) -> str:

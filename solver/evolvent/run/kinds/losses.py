@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
 from evolvent.check.scene_warnings import flank_warnings
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
-from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
-from evolvent.results.archive.archive import COARSE
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.results.error_bars.estimation import estimated_errors
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.table import Table
 from evolvent.run.call import Call
-from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
-from evolvent.run.kept_pitch import KeptPitch, Meshes, companion_of, kept_pitch
+from evolvent.run.kept_pitch import require_resumable
+from evolvent.run.solved_pitches import SolvedPitches, companion_of, solved_pitches
 from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
@@ -57,22 +54,7 @@ LOSSES_PICTURE = TablePicture("losses.png", (LOSSES,), "evolvent.run.kinds.losse
 
 
 @dataclass(frozen=True)
-class SolvedLoad:
-    """The pitch under a torque, and that of its coarse companion."""
-
-    fine: KeptPitch
-    """Pitch on the meshes of the scene."""
-    coarse: Attempt[KeptPitch]
-    """Pitch on the meshes of the error bars."""
-
-    def run(self) -> RunData:
-        """The pitch with its figures and error bars. On rank 0 alone."""
-        run = self.fine.run_data()
-        return replace(run, errors=estimated_errors(run, companion_of(self.coarse)))
-
-
-@dataclass(frozen=True)
-class Losses(Computation[list[SolvedLoad]]):
+class Losses(Computation[list[SolvedPitches]]):
     """The pitch with friction under each of a list of torques."""
 
     name: ClassVar[str] = "losses"
@@ -98,24 +80,28 @@ class Losses(Computation[list[SolvedLoad]]):
         """Warnings on charts, flanks and tips."""
         yield from (*chart_warnings(self.scene), *flank_warnings(gear_problem(self.scene)))
 
-    def solve(self, call: Call) -> list[SolvedLoad]:
+    def solve(self, call: Call) -> list[SolvedPitches]:
         """Both pitches under each torque, on gears that are condensed once, see `Computation.solve`."""
-        call.on_first(lambda: call.begin(self.scene, resumed=call.resume))
-        shared = call.preparing(SharedGears([gear_problem(scene) for scene in self.sized]).prepare)
-        return [_solved(shared, scene, PART.format(number)) for number, scene in enumerate(self.sized)]
+        parts = {PART.format(number): scene for number, scene in enumerate(self.sized)}
+        call.on_first(lambda: self._begin(call, parts))
+        shared = call.preparing(SharedGears([gear_problem(scene) for scene in parts.values()]).prepare)
+        return [solved_pitches(shared, scene, part) for part, scene in parts.items()]
 
-    def results(self, call: Call, solved: list[SolvedLoad]) -> Results:
+    def results(self, call: Call, solved: list[SolvedPitches]) -> Results:
         """The table of all torques."""
         mended = any(load.fine.solved.deflected for load in solved) and skips(self.scene, "deflected-flanks")
         reasons = dict.fromkeys(load.coarse.reason for load in solved if load.coarse.reason)
-        rows = [row for load in solved for row in _rows(load.run())]
+        runs = (load.run_data(companion_of(load.coarse)) for load in solved)
+        rows = [row for run in runs for row in _rows(run)]
         return Results(self.scene, [LOSSES.of(rows)], [*[ON_DEFLECTED] * mended, *reasons])
 
-
-def _solved(call: Call, scene: Scene, part: str) -> SolvedLoad:
-    """Both pitches under a torque. part: of the archive."""
-    fine, coarse = kept_pitch(call, scene, Meshes(part=part)), Meshes(companion_mesh, COARSE + part)
-    return SolvedLoad(fine, call.companion(scene, lambda: kept_pitch(call, fine.scene, coarse)))
+    def _begin(self, call: Call, parts: Mapping[str, Scene]) -> None:
+        """Prepares the folder. On rank 0 alone. Raises ArchiveError, before anything is removed, where stored positions
+        belong to another scene. parts: of the archive, with the scene under each torque."""
+        if call.resume:
+            for part, scene in parts.items():
+                require_resumable(scene, call.folder.out, self.command, part)
+        call.begin(self.scene, resumed=call.resume)
 
 
 def _rows(run: RunData) -> Iterator[LossRow]:

@@ -32,9 +32,10 @@ from evolvent.run.call import Call
 from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.dynamics.bodies import elastic_point
-from evolvent.run.kept_pitch import COMPANION, STORED, KeptPitch, companion_of, kept_pitch
+from evolvent.run.kept_pitch import COMPANION, STORED, KeptPitch, kept_pitch
 from evolvent.run.output import facts_of, last_lines, write_fields_of
 from evolvent.run.progress import DEFORMATION, VIBRATION
+from evolvent.run.solved_pitches import companion_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.output import SkipName

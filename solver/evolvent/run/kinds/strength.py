@@ -33,13 +33,11 @@ from evolvent.strength.results.tables import (
     strength_rows,
 )
 from evolvent.strength.root_surface import compression_side, tension_side
+from evolvent.strength.solution.root_stress import NO_DEEP_TEETH
 from evolvent.strength.standard.root_stress import RootLoad
 from evolvent.strength.strain_gauges import Gauge, gauge_places
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
-
-NO_DEEP_TEETH = 12
-"""Tolerance class where the scene gives none: Y_DT is 1."""
 
 
 @dataclass(frozen=True)

@@ -90,6 +90,15 @@ class FlankFatigue:
         return np.isclose(self.depths, SHALLOW.get(place, 0.0), rtol=0.0, atol=1e-9)
 
 
+def fatigue_of_both(
+    loads: FlankLoads, friction: float, depths: Sequence[float], materials: tuple[FatigueMaterial, FatigueMaterial]
+) -> tuple[FlankFatigue, FlankFatigue]:
+    """Fatigue criteria of the flanks of pinion and wheel, which bear the same tractions, see `flank_fatigue`."""
+    pinion, wheel = materials
+    first = flank_fatigue(loads, friction, depths, pinion)
+    return first, first if wheel == pinion else flank_fatigue(loads, friction, depths, wheel)
+
+
 def flank_fatigue(
     loads: FlankLoads, friction: float, depths: Sequence[float], material: FatigueMaterial
 ) -> FlankFatigue:

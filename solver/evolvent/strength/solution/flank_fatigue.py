@@ -14,7 +14,7 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.solution.solver import check_condensed
 from evolvent.results.solution.pitch import PitchSolution
 from evolvent.scene.schema.fatigue import FatigueSection
-from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
+from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, fatigue_of_both, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads, LoadedPosition
 from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
 from evolvent.strength.results.fatigue_facts import FatigueFacts, fatigue_facts
@@ -182,13 +182,10 @@ def pitch_fatigue(
     pinion, wheel = (settings.of(body.material) for body in gears.bodies)
     found, facts, heights = [], [], gears.bodies[0].z
     for pitch in solved:
-        inner, both = pitch.pressure.inner_path, zip(pitch.results, pitch.pressure.cuts)
-        positions = [LoadedPosition(k, result, cut, heights) for k, (result, cut) in enumerate(both)]
+        inner, solutions = pitch.pressure.inner_path, zip(pitch.results, pitch.pressure.cuts)
+        positions = [LoadedPosition(k, result, cut, heights) for k, (result, cut) in enumerate(solutions)]
         loads = FlankLoads.joined([each.loads(inner) for each in positions])
-        first = flank_fatigue(loads, pitch.friction, settings.depths, pinion)
-        # both flanks bear the same tractions
-        other = first if wheel == pinion else flank_fatigue(loads, pitch.friction, settings.depths, wheel)
-        ends = zone_ends(gears.pair, inner)
-        found.append(FrictionFatigue(pitch.friction, (first, other), math.nan, ends))
+        both = fatigue_of_both(loads, pitch.friction, settings.depths, (pinion, wheel))
+        found.append(FrictionFatigue(pitch.friction, both, math.nan, zone_ends(gears.pair, inner)))
         facts.append(fatigue_facts(gears.pair, found[-1], positions, inner, (pinion, wheel)))
     return PitchFatigue(gears.pair, tuple(found), tuple(facts))

@@ -25,7 +25,7 @@ from evolvent.gears.solution import certificates
 from evolvent.gears.solution.certificates import PitchImbalance
 from evolvent.gears.sweep import pitch_sweep
 from evolvent.results.archive.run_folder import FolderError
-from evolvent.results.archive.store import Store
+from evolvent.results.archive.store import ArchiveError, Store
 from evolvent.run.kinds.all import KINDS, Kind
 from evolvent.run.study.plan.study_file import COMPUTATIONS
 from evolvent.scene.scene import load_scene
@@ -50,7 +50,7 @@ class Whole:
     """A computation that was not interrupted."""
 
     folder: Path
-    """Its folder."""
+    """Folder of the computation."""
     counts: Counter[str]
     """Number of positions that were solved, and of results that were stored."""
 
@@ -141,6 +141,14 @@ def test_results_are_not_replaced_unasked(kind: Kind, whole: Whole) -> None:
     assert {path: path.stat().st_mtime_ns for path in whole.folder.rglob("*")} == before
 
 
+def test_another_scene_is_not_resumed(kind: Kind, whole: Whole) -> None:
+    """Resumed with another torque: refused, and the folder stays as it is."""
+    before = {path: path.stat().st_mtime_ns for path in whole.folder.rglob("*")}
+    with pytest.raises(ArchiveError, match=r"load\.torque_Nm|of another one|other gears"):
+        quietly(small(kind, "load.torque_Nm=111"), whole.folder, resume=True)
+    assert {path: path.stat().st_mtime_ns for path in whole.folder.rglob("*")} == before
+
+
 def test_foreign_files_stay(kind: Kind, tmp_path: Path) -> None:
     """A file of the name of a table that no call has written: refused before anything is computed, also with
     --overwrite."""
@@ -152,7 +160,7 @@ def test_foreign_files_stay(kind: Kind, tmp_path: Path) -> None:
 
 
 def test_every_picture_is_drawn_again(kind: Kind, whole: Whole, tmp_path: Path) -> None:
-    """Of a call that is resumed for its pictures alone: `evolvent plot` draws each of them, byte by byte."""
+    """A call is resumed for its pictures alone: `evolvent plot` draws each of them again, byte by byte."""
     out = copytree(whole.folder, tmp_path / "out")
     quietly(small(kind, "output.pictures=true"), out, resume=True)
     pictures = {path.name for path in (out / "pictures").iterdir()}
@@ -175,7 +183,7 @@ def test_pitch_out_of_balance_is_an_error(kind: Kind, tmp_path: Path, monkeypatc
 
 
 def test_command_line_and_studies_know_it(kind: Kind) -> None:
-    """Its command, and its name in a study; a load list is itself one of several scenes."""
+    """Command line and studies name each computation; a load list is itself one of several scenes."""
     assert kind.command in {command.name for command in COMMANDS}
     assert (kind.name in COMPUTATIONS) == (kind.name != "loads")
     assert kind.load().name == kind.name and kind.load().command == kind.command

@@ -68,7 +68,7 @@ def said(text: str, *overrides: str) -> tuple[Scene, list[str]]:
 
 
 def test_old_names_in_a_file_are_read_as_the_new_ones() -> None:
-    """The same scene, each old name with a sentence that has the new one; the new names without."""
+    """Old names make the scene of the new ones, each with a sentence that has the new one; new names make none."""
     assert said(OLD) == (scene_from_text(NEW), WARNINGS)
     assert said(NEW)[1] == []
     warned: list[str] = []

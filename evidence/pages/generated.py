@@ -12,7 +12,7 @@ from pathlib import Path
 from evidence import mutations
 from evidence.benchmarks.accuracy import face_load, transient_bar_costs, transient_bars
 from evidence.checkout import ROOT
-from evidence.pages import blow, outputs, promises, readme, tutorial
+from evidence.pages import abilities, blow, outputs, promises, readme, tutorial
 from evidence.pages.papers import he, he_bodies, he_models, he_transient, yang, yang_fatigue, yang_transient, zhang
 from evidence.robustness import repeats, study_page
 
@@ -44,6 +44,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "fatigue.md": {"friction": yang_fatigue.friction_table(docs), "fitted": yang_fatigue.fitted_table(docs)},
         docs / "transient.md": {"bars": transient_bars.said(docs), "costs": transient_bar_costs.said(docs)},
         docs / "transient_method.md": {"calculix": blow.table(docs), "smeared": he_transient.smeared(docs)},
+        docs / "computation.md": {"abilities": abilities.table(docs)},
         docs / "checks.md": {"repeats": repeats.said(docs)},
         docs / "evidence.md": {"bars": bars, "face-load": face_load.table(docs)},
         docs / "edges.md": {"seen": mutations.table(root)},

@@ -63,6 +63,7 @@ def test_ball_profile_on_squares(alone: Alone) -> None:
     assert error["squares, a/2, skew"] < min(4.0, 0.5 * error["squares, a/2"])
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_gear_demo(run_script: RunScript, tmp_path: Path, ranks: int) -> None:

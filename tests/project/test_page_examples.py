@@ -37,7 +37,8 @@ def having(language: str) -> list[Path]:
     return [page for page in PAGES if blocks(page, language)]
 
 
-README_FIRST = sampled(sorted(having("sh"), key=lambda page: page.name != "README.md"))
+TUTORIAL_FIRST = sampled(sorted(having("sh"), key=lambda page: page.name != "tutorial.md"))
+API_FIRST = sampled(sorted(having("python"), key=lambda page: page.name != "gears_api.md"))
 
 
 @pytest.fixture
@@ -70,7 +71,7 @@ def environment(checkout: Path) -> dict[str, str]:
 
 @pytest.mark.mpi
 @pytest.mark.slow
-@pytest.mark.parametrize("page", README_FIRST, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", TUTORIAL_FIRST, ids=lambda page: page.name)
 def test_shell_lines_run(page: Path, checkout: Path) -> None:
     """All shell blocks of a page, one after the other in one shell that stops at the first failure."""
     script = "set -e\n" + "".join(blocks(page, "sh"))
@@ -82,7 +83,7 @@ def test_shell_lines_run(page: Path, checkout: Path) -> None:
     assert done.returncode == 0, f"{page.name}: {done.stdout[-2000:]}{done.stderr[-2000:]}"
 
 
-@pytest.mark.parametrize("page", having("python"), ids=lambda page: page.name)
+@pytest.mark.parametrize("page", API_FIRST, ids=lambda page: page.name)
 def test_python_blocks_run(page: Path, checkout: Path) -> None:
     """All Python blocks of a page, one after the other in one program."""
     program = "\n".join(blocks(page, "python"))

@@ -79,6 +79,7 @@ def test_a_worker_that_dies_is_replaced(tmp_path: Path) -> None:
     assert times_written(out) == [1, 1, 1]
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_a_cluster_loses_a_worker(tmp_path: Path) -> None:
     """A running scheduler with two workers, one of which is killed after the first scene: all scenes are done."""
@@ -93,6 +94,7 @@ def test_a_cluster_loses_a_worker(tmp_path: Path) -> None:
     assert {row["status"] for row in table(out)} == {"done"}
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: RunScript) -> None:
     """Without workers, with a worker of two threads: status 2 and what to start."""

@@ -43,6 +43,7 @@ def few_cells(problem: GearProblem, member: Member) -> LevelledMesh:
     return levelled_mesh(problem, member, adapted)
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_each_torque_has_the_gears_that_it_would_have_alone() -> None:
     """The light torque takes two levels, the heavy one the first of them; the compliance is that of gears condensed for

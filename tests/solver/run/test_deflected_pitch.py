@@ -58,6 +58,7 @@ def same(first: Path, second: Path, *tables: str) -> None:
         assert (first / name).read_bytes() == (second / name).read_bytes(), name
 
 
+@pytest.mark.evidence
 def test_transient_has_its_statics_on_deflected_flanks(bent: Path, tmp_path: Path) -> None:
     """Statics and motion of 500 r/min, and a sentence on the flanks of both; resumed, the statics are not solved again,
     and the sentence stays."""
@@ -71,6 +72,7 @@ def test_transient_has_its_statics_on_deflected_flanks(bent: Path, tmp_path: Pat
     same(asked, found, "transient.csv", "transient.json", "scene.toml")
 
 
+@pytest.mark.evidence
 def test_strength_has_its_roots_on_deflected_flanks(bent: Path, tmp_path: Path) -> None:
     """Root stress at uniform and further positions, and the scene that is written."""
     found, asked = tmp_path / "found", tmp_path / "asked"
@@ -97,6 +99,7 @@ def test_run_says_that_its_flanks_are_deflected(bent: Path, tmp_path: Path) -> N
     assert said(stiff, "mesh.level=quick", path=ROOT / "demos/he2022.toml") == (False, False, True)
 
 
+@pytest.mark.evidence
 def test_fatigue_has_its_flanks_deflected(bent: Path, tmp_path: Path) -> None:
     """The flanks' loads, and the scene that is written."""
     found, asked = tmp_path / "found", tmp_path / "asked"
@@ -105,6 +108,7 @@ def test_fatigue_has_its_flanks_deflected(bent: Path, tmp_path: Path) -> None:
     same(asked, found, "fatigue.csv", "scene.toml")
 
 
+@pytest.mark.evidence
 def test_excitation_is_that_of_deflected_flanks(bent: Path, tmp_path: Path) -> None:
     """Curves under two torques, and a sentence; resumed, nothing is solved again, and the sentence stays."""
     found, asked = tmp_path / "found", tmp_path / "asked"

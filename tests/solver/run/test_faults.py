@@ -30,6 +30,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_run_killed_at_random_times_is_resumed(whole: Path, tmp_path: Path) -> None:
     """kill -9 at four random moments, each time resumed: every number is that of the undisturbed run within 1e-7, and

@@ -108,6 +108,7 @@ def test_each_report_is_a_scene_of_its_own(whole: Path) -> None:
     assert "operating_rpm = 2000" in text and "flank_csv" in text
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 @pytest.mark.mpi
 def test_wear_with_vibration_does_not_depend_on_ranks(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
@@ -116,6 +117,7 @@ def test_wear_with_vibration_does_not_depend_on_ranks(whole: Path, run_script: R
     assert_same(tmp_path / "out", whole, 1e-6)
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_killed_twice_and_resumed(whole: Path, run_script: RunScript, tmp_path: Path) -> None:
     """Killed while a block is written, resumed and killed again: depths and vibration as never stopped within 1e-9,

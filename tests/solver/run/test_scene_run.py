@@ -11,6 +11,7 @@ from evolvent.gears.solution.certificates import BALANCE_LIMIT
 from evolvent.results.archive.store import read_arrays
 from tests.support.gear_cases import HELICAL
 from tests.support.running.processes import BROKEN_RUN, RunScript, on_ranks
+from tests.support.running.samples import sampled
 
 SPUR = "demos/he2022.toml"
 QUIET = (
@@ -47,7 +48,7 @@ def on_one_rank(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory)
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("ranks", [2, 4])
+@pytest.mark.parametrize("ranks", sampled([2, 4]))
 def test_results_do_not_depend_on_ranks(
     ranks: int, on_one_rank: list[dict[str, object]], run_script: RunScript, tmp_path: Path
 ) -> None:
@@ -64,6 +65,7 @@ def test_results_do_not_depend_on_ranks(
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == ranks
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 @pytest.mark.mpi
 def test_helical_results_do_not_depend_on_ranks(run_script: RunScript, tmp_path: Path) -> None:

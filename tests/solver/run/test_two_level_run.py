@@ -31,7 +31,7 @@ SMALL = (
     "mesh.order=2", "mesh.elements_per_contact_width=0.8", "pinion.face_width_mm=4", "wheel.face_width_mm=4",
     "contact.friction=[0.1]", "pinion.tip_relief_um=8",
 )
-EVERYTHING = ("output.deformation=true",)
+EVERYTHING = ("output.deformation=true", "output.animation=false")
 BARE = ("output.pictures=false", "output.animation=false", "output.fields=false", "output.error_bars=false")
 
 
@@ -54,7 +54,7 @@ def levels() -> Any:
 
 @pytest.fixture(scope="module")
 def out(levels: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A finished run with everything that a scene may ask for."""
+    """A finished run with everything that a scene may ask for but the animation."""
     folder = tmp_path_factory.mktemp("levels") / "out"
     quietly(Run.of(small_scene(*EVERYTHING)), folder)
     return folder

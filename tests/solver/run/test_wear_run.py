@@ -19,6 +19,7 @@ from evolvent.wear.results.report import read_worn
 from evolvent_meshes.arrays import Floats
 from tests.support.gear_cases import HELICAL
 from tests.support.running.processes import BROKEN_RUN, RunScript
+from tests.support.running.samples import sampled
 
 SPUR = "demos/he2022.toml"
 QUIET = (
@@ -77,6 +78,7 @@ def followed(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) ->
     return out
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("friction", ["0.0", "0.1"])
@@ -92,6 +94,7 @@ def test_wear_does_not_depend_on_ranks(friction: str, worn_pair: Path, run_scrip
         assert_same(tmp_path / str(ranks), alone, 1e-8)
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("how", ["kill-before-18", "full-14"])
@@ -156,7 +159,7 @@ def test_wear_continues_from_flank_charts(worn_pair: Path, run_script: RunScript
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("blocks_", ["implicit", "explicit"])
+@pytest.mark.parametrize("blocks_", sampled(["explicit", "implicit"]))
 def test_helical_pair_wears_in_the_ratio_of_coefficients(blocks_: str, run_script: RunScript, tmp_path: Path) -> None:
     """A coarse helical pair in 3D with friction: depths nowhere negative, both gears' volumes in the ratio of their
     K/H and of how often a tooth meets, and the map of the worn flanks drawn where pictures are asked for."""

@@ -20,6 +20,11 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 
 FEW = 60
 """Unknowns of a harmonic below which its dense eigenproblem is solved."""
+MORE = 6
+"""Krylov vectors beyond two for each mode. ARPACK's own choice, 20 at least, wants half again as many solves for one
+mode."""
+RESIDUAL = 1e-12
+"""Relative residual of the modes; frequencies are then right to rounding (1e-14)."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +144,8 @@ def _modes(
         return np.sqrt(values[:count]), shapes[:, :count]
     operator = LinearOperator((n, n), inverse.solve, dtype=K.dtype)
     start = np.random.default_rng(1).standard_normal(n).astype(K.dtype)  # ARPACK's own differs from run to run
-    values, shapes = eigsh(K, count, M=M, sigma=0.0, OPinv=operator, v0=start)
+    vectors = min(2 * count + MORE, n - 1)
+    values, shapes = eigsh(K, count, M=M, sigma=0.0, OPinv=operator, v0=start, ncv=vectors, tol=RESIDUAL)
     order = np.argsort(values)
     shapes = shapes[:, order]
     norms = np.sqrt(np.real(np.einsum("nm,nm->m", shapes.conj(), M @ shapes)))

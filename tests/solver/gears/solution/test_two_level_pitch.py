@@ -30,7 +30,7 @@ def test_cells_and_options_without_levels_are_refused() -> None:
         narrow(MeshSettings("quick", two_level=True), GearOptions(whole_gears=True))
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_two_levels_and_one_give_the_same_position() -> None:
     """At μ = 0.2, against a mesh of one level with other cells: the transmission error within 0.5 %, both torques
     within 0.1 %; balanced as `certify` wants it. Wear refuses such gears."""

@@ -58,6 +58,7 @@ def rows() -> list[BarRow]:
     return measure_bars(spur_problem(widths=(1.7, 3.0, 6.0), positions=4, frictions=(0.0, 0.2)))
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_nine_in_ten_error_bars_hold_the_true_error(rows: list[BarRow]) -> None:
     """Problem: He's spur pair on 12 meshes (1.7, 3 and 6 elements across the contact, quadrilaterals and triangles,

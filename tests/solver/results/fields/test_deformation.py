@@ -55,6 +55,7 @@ def test_recovered_flank_displacement_is_that_of_the_compliance(case: Case) -> N
                 assert np.abs(found - wanted).max() < 1e-8 * np.abs(wanted).max()
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_levels_move_the_sector_as_contact_saw_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """A helical pair whose flanks have levels of their own. Exact: the forces on the coarse flanks add up to those on

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from shutil import copytree
 
 import numpy as np
 import pytest
@@ -53,6 +55,19 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert bodies.startswith("gear bodies: their own vibration of") and "(mesh harmonic 3)" in bodies
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")
     return folder
+
+
+@pytest.fixture
+def again(out: Path, tmp_path: Path) -> Callable[..., list[str]]:
+    """The call again with other keys of [dynamics], on the positions that `out` has solved, in the folder `again`; its
+    warnings."""
+
+    def computed(*settings: str) -> list[str]:
+        folder = copytree(out, tmp_path / "again")
+        given = Dynamics.of(scene("output.pictures=false", *settings))
+        return quietly(given, folder, resume=True, prepare=lambda *_: pytest.fail("gears condensed again"))
+
+    return computed
 
 
 def test_warnings_are_kept(out: Path) -> None:
@@ -128,13 +143,12 @@ def test_resonance_is_where_stiffness_and_inertia_put_it(out: Path) -> None:
     assert {line["repeats"] for line in lines} == {"1"}
 
 
-def test_rigid_bodies_have_all_inertia_at_the_bores(tmp_path: Path) -> None:
+def test_rigid_bodies_have_all_inertia_at_the_bores(again: Callable[..., list[str]], tmp_path: Path) -> None:
     """`dynamics.bodies = "rigid"`, once the default: the natural speed is √(k/m_e) 60/(2π z), the transmission error s
     itself, and a sentence says what that leaves out."""
-    given = 'dynamics.bodies="rigid"', 'dynamics.mesh="tangent"', "dynamics.speeds=2"
-    said = quietly(Dynamics.of(scene(*given)), tmp_path)
+    said = again('dynamics.bodies="rigid"', 'dynamics.mesh="tangent"', "dynamics.speeds=2")
     assert said[0].startswith('dynamics.bodies = "rigid": all inertia is at the bores')
-    known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
+    known = json.loads((tmp_path / "again/dynamics.json").read_text(encoding="utf-8"))
     natural = np.sqrt(1e6 * known["mean_stiffness_N_per_um"] / known["equivalent_mass_kg"]) * 60.0 / (2.0 * np.pi * 50)
     assert known["natural_speed_rpm"] == known["rigid_natural_speed_rpm"] == pytest.approx(natural, rel=1e-9)
     assert known["moving_mass_kg"] == known["equivalent_mass_kg"] and known["body_frequency_Hz"] is None
@@ -199,13 +213,13 @@ def test_spectrum_has_the_harmonics(out: Path) -> None:
             assert float(line["frequency_Hz"]) == pytest.approx(frequency, rel=1e-7)
 
 
-def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
+def test_histories_are_those_of_the_sweep(again: Callable[..., list[str]], tmp_path: Path) -> None:
     """Speeds of histories join the sweep, one of its own counts once; each motion closes after its repeats, its largest
     force is at most that of response.csv, and within 2 % of it; its mean force is the static one (no damping against
     the ground), to 1e-3 by the trapezoidal rule."""
-    one = scene("dynamics.histories_rpm=[1700,3900]", "dynamics.speeds=20", 'dynamics.mesh="secant"')
-    folder = tmp_path / "out"
-    quietly(Dynamics.of(one), folder)
+    given = "dynamics.histories_rpm=[1700,3900]", "dynamics.speeds=20", 'dynamics.mesh="secant"'
+    again(*given, "output.pictures=true")
+    folder = tmp_path / "again"
     response = {(line["speed_rpm"], line["way"]): line for line in rows(folder / "response.csv")}
     assert len(response) == 2 * 21
     lines = rows(folder / "histories.csv")
@@ -238,23 +252,25 @@ def test_settings_follow_from_the_gears() -> None:
     assert geometric_backlash(GearPair(gear, gear, 150.1)) == pytest.approx(0.2 * np.sin(np.radians(20.0)), rel=0.01)
 
 
-def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
+def test_little_backlash_is_warned_of(again: Callable[..., list[str]], tmp_path: Path) -> None:
     """That of the reference centre distance, none: the key and the static deflection are named."""
-    one = scene("dynamics.backlash_um=0", 'dynamics.mesh="secant"', "dynamics.speeds=2")
-    (said,) = [each for each in quietly(Dynamics.of(one), tmp_path) if "backlash" in each]
-    known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
+    found = again("dynamics.backlash_um=0", 'dynamics.mesh="secant"', "dynamics.speeds=2")
+    (said,) = [each for each in found if "backlash" in each]
+    known = json.loads((tmp_path / "again/dynamics.json").read_text(encoding="utf-8"))
     deflection = known["static_force_N"] / known["mean_stiffness_N_per_um"]
     assert said.startswith(f"dynamics.backlash_um: found 0 µm, less than the static deflection of {deflection:.3g} µm")
 
 
-def test_no_factor_of_the_standard_without_deviations(tmp_path: Path) -> None:
+def test_no_factor_of_the_standard_without_deviations(out: Path, tmp_path: Path) -> None:
     """With f_pb alone: a column without a number, and a sentence that names the missing key."""
     words = [each for each in SETTINGS if "profile_deviation" not in each]
     few = 'dynamics.mesh="secant"', "dynamics.speeds=2"
-    one = load_scene(ROOT / "demos/he2022_dynamics.toml", [*QUIET, *words, *few])
-    (said,) = [each for each in quietly(Dynamics.of(one), tmp_path) if each.startswith("dynamic_factor_iso: ")]
+    one = load_scene(ROOT / "demos/he2022_dynamics.toml", [*QUIET, *words, *few, "output.pictures=false"])
+    folder = copytree(out, tmp_path / "again")
+    found = quietly(Dynamics.of(one), folder, resume=True)
+    (said,) = [each for each in found if each.startswith("dynamic_factor_iso: ")]
     assert said.endswith("give dynamics.profile_deviation_um")
-    assert {line["dynamic_factor_iso"] for line in rows(tmp_path / "response.csv")} == {"nan"}
+    assert {line["dynamic_factor_iso"] for line in rows(folder / "response.csv")} == {"nan"}
 
 
 def test_wear_does_not_keep_a_scene_from_its_vibration(tmp_path: Path) -> None:

@@ -166,7 +166,7 @@ def test_command_line(tmp_path: Path) -> None:
     """A narrow helical pair: the standard's virtual gears without a rotation, and no other formulas."""
     words = ["--set", "sweep.positions=2", "--set", "output.error_bars=false", "--set", "output.pictures=false"]
     pair = str(ROOT / "evidence/benchmarks/accuracy/scenes/narrow_helical.toml")
-    more = ["--set", "mesh.elements_per_contact_width=0.5", "--set", "contact.friction=0"]
+    more = ["--set", "mesh.elements_per_contact_width=0.5", "--set", "contact.friction=0", "--set", "mesh.order=1"]
     assert main(["strength", pair, "--out", str(tmp_path), "--quiet", *words, *more]) == 0
     found = rows(tmp_path / "strength.csv")
     assert len(found) == 2 * (2 + 2)

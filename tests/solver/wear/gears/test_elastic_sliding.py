@@ -69,7 +69,7 @@ def apart(model: GearModel, here: ContactGeometry, found: SharedPosition) -> Flo
 
 @pytest.mark.parametrize(
     ("kind", "tolerance"),
-    [("steel", 0.02), ("plastic", 0.06), pytest.param("helical", 0.08, marks=pytest.mark.slow)],
+    [("steel", 0.02), ("plastic", 0.06), pytest.param("helical", 0.08, marks=pytest.mark.evidence)],
 )
 def test_elastic_sliding_of_followed_material_points(kind: str, tolerance: float) -> None:
     """A steel pinion on a wheel of steel or of plastic, and a helical pair, without friction. Two states TURN before

@@ -13,7 +13,7 @@ from tests.support.gear_wear_cases import smooth_wear, wear_scene, wearing_gears
 
 @pytest.mark.parametrize(
     ("kind", "order"),
-    [("spur", 2), ("spur", 1), ("helical", 2), ("helical", 1)],
+    [("spur", 2), ("spur", 1), pytest.param("helical", 2, marks=pytest.mark.evidence), ("helical", 1)],
 )
 def test_wear_in_the_meshes_and_in_the_gap_give_the_same_contact(kind: str, order: int) -> None:
     """Problem: flanks worn by 5 µm in the middle, once in the gap and once in the meshes. Exact: the meshes lose that

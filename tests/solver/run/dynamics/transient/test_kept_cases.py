@@ -22,8 +22,8 @@ from tests.support.running.processes import RunScript, on_ranks
 
 TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
 SETTINGS = (
-    "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[2000]",
-    "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
+    "mesh.level=quick", "sweep.positions=6", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[2000]",
+    "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false", "transient.mesh_periods=2",
 )
 WHOLE = "import sys; from evolvent.commands.app import main; sys.exit(main(sys.argv[1:]))"
 STOPPED = """
@@ -161,7 +161,7 @@ def test_speeds_that_are_added_later(
     computed, without its statics, and the tables are those of one call with both speeds."""
 
     def of(each: tuple[int, ...]) -> Scene:
-        few = ("contact.friction=0", "output.error_bars=false", "transient.mesh_periods=3", *modes)
+        few = ("contact.friction=0", "output.error_bars=false", *modes)
         return scene(*few, f"transient.speeds_rpm={list(each)}")
 
     whole, grown = tmp_path / "whole", tmp_path / "grown"
@@ -193,7 +193,7 @@ def test_a_higher_speed_resolves_other_modes(out: Path, tmp_path: Path) -> None:
 
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
     """The call begins from the start, with a sentence."""
-    few = scene("contact.friction=0", "transient.mesh_periods=2")
+    few = scene("contact.friction=0", "output.error_bars=false")
     said = quietly(Transient.of(few), tmp_path, resume=True)
     assert said[0].startswith("--resume found nothing to continue")
 

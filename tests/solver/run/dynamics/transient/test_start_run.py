@@ -18,7 +18,7 @@ from tests.support.checkout import ROOT
 from tests.support.computing.quiet import quietly
 from tests.support.computing.redrawn import redrawn
 
-POSITIONS = 40
+POSITIONS = 20
 SETTINGS = (
     "mesh.level=quick", f"sweep.positions={POSITIONS}", "transient.speeds_rpm=[60]", "transient.mesh_periods=2",
     "transient.tolerance=0.01", "transient.modes_per_harmonic=0", "dynamics.backlash_um=300", "output.animation=false",

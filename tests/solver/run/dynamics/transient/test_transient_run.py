@@ -26,6 +26,7 @@ POSITIONS = 10
 SETTINGS = (
     "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[30,2000]",
     "transient.spectral_radius=0.0", "dynamics.backlash_um=50", "transient.drive=constant_speed",
+    "output.animation=false",
 )
 
 
@@ -54,7 +55,6 @@ def test_tables_have_every_speed_and_coefficient(out: Path) -> None:
     found = rows(out / "transient.csv")
     assert len(found) == 2 * 2 * POSITIONS
     assert (out / "pictures/transient.png").stat().st_size > 10_000
-    assert (out / "pictures/field_of_action.gif").stat().st_size > 10_000
     for speed in (30.0, 2000.0):
         for friction in (0.0, 0.2):
             own = [row for row in found if (row["speed_rpm"], row["friction"]) == (speed, friction)]
@@ -149,13 +149,15 @@ def test_statics_out_of_balance_end_the_run(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_a_motion_that_does_not_repeat_yet_is_named(tmp_path: Path) -> None:
-    """Two mesh periods of a lightly damped pair from statics are not enough."""
+    """Two mesh periods of a lightly damped pair from statics are not enough; the motion is drawn all the same."""
     few = scene("transient.speeds_rpm=[2000]", "contact.friction=0", "transient.mesh_periods=2",
-                "dynamics.damping_ratio=0.01", "output.pictures=false", "output.animation=false")
+                "dynamics.damping_ratio=0.01", "output.error_bars=false", "output.animation=true")
     said = quietly(Transient.of(few), tmp_path)
     assert "not steady after 2 mesh periods" in said[0]
+    assert (tmp_path / "pictures/field_of_action.gif").stat().st_size > 10_000
 
 
+@pytest.mark.evidence
 def test_back_flanks_are_refused(tmp_path: Path) -> None:
     """Near resonance with hardly damping the pair is thrown apart further than a backlash of 1 µm."""
     thrown = scene("transient.speeds_rpm=[4200]", "contact.friction=0", "dynamics.damping_ratio=0.005",

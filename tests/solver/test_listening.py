@@ -20,11 +20,13 @@ from tests.support.run_parts import store
 from tests.support.running.listening import listening, started_mpi, watched
 from tests.support.running.page_commands import FEWER
 from tests.support.running.processes import one_at_a_time
+from tests.support.running.samples import sampled
 from tests.support.synthetic_run import synthetic_run
 
 COMMANDS = {str(each.name or each.callback.__name__): str(each.epilog) for each in app.registered_commands
             if each.callback is not None}
 """Name -> the end of its help, with examples."""
+RUN_AND_STUDY_FIRST = sampled(sorted(COMMANDS, key=lambda name: name not in ("run", "study")), every=2)
 PROCESSES = {"study": 3}
 """Command -> how many processes start MPI, where it is not one: watched until all have."""
 
@@ -60,7 +62,7 @@ def _no_settings_of_mpi(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", RUN_AND_STUDY_FIRST)
 def test_command_listens_on_no_network(command: str, folder: Path) -> None:
     """From its start until a second after MPI's, or to its end: neither the process nor one that it starts listens
     beyond loopback."""

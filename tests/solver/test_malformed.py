@@ -236,7 +236,7 @@ EXTREMES = (
     "1.7e308", "1000000000000", "0", "-0.0", "-1", "-1e300", "1" + "0" * 400,
 )
 NUMBERS = [key for key, field in keys_of(Scene).items() if re.search(r"float|int|Literal\[1", str(field.annotation))]
-PARTS = 4
+PARTS = 8
 """Parts into which the extreme values are divided; of the n-th key, `make test` tries part n modulo PARTS."""
 TRIALS = [
     pytest.param(key, part, id=f"{key}-{part}", marks=() if part == number % PARTS else pytest.mark.evidence)

@@ -43,8 +43,8 @@ def _inertia(gear: str) -> Any:
 
 
 def _list_remedy(given: tuple[float, ...], wrong: list[float], why: str, lacking: str) -> str:
-    """Remedy for an invalid list of torques. wrong: torques beyond its limits. why: what is said of them. lacking: remedy
-    where there are none, and each is there once."""
+    """Remedy for an invalid list of torques. wrong: torques beyond its limits. why: what is said of them. lacking: the
+    remedy where there are none, and each is there once."""
     if wrong:
         return f"leave out {shown(wrong[0])}{why}"
     twice = [each for each in given if given.count(each) > 1]

@@ -53,10 +53,10 @@ class Loads(Computation[None]):
     def solve(self, call: Call) -> None:
         """Computes the runs; those that are complete stay. Collective; raises what `compute` does."""
         call.on_first(lambda: self._check_folders(call))
-        call.on_first(lambda: call.begin(self.scene, resumed=call.resume))
         gears = SharedGears([gear_problem(run.scene) for run in self.runs.values()])
-        for name, run in self.runs.items():
-            compute(run, call.folder.out / name, replace(call.options, prepare=gears.prepare, label=name))
+        with call.beginning(self.scene, gears.prepare) as prepare:
+            for name, run in self.runs.items():
+                compute(run, call.folder.out / name, replace(call.options, prepare=prepare, label=name))
 
     def results(self, call: Call, solved: None) -> Results:
         """The table of all runs."""

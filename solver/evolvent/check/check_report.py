@@ -67,7 +67,7 @@ def _skip_lines(scene: Scene) -> str:
 
 
 def _warning_lines(scene: Scene) -> list[str]:
-    warnings = scene_warnings(scene)
+    warnings = list(scene_warnings(scene))
     return ["\n".join(["Warnings", *(f"  {sentence}" for sentence in warnings)])] if warnings else []
 
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.operation_figures import operation_warnings
-from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
+from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.solution.certificates import certify, certify_pitch
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
@@ -55,6 +54,7 @@ def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tu
             call.on_first(lambda: call.begin(scene, resumed=True))
             return meshes, Timings()
     preparation = call.gears(gear_problem(scene))
+    preparing = timings_of(preparation)
     if kept is not None:
         call.on_first(lambda: call.begin(scene, resumed=True))
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
@@ -66,19 +66,13 @@ def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tu
     for stage in study_states(gears, wear.reports, settings_of(wear), kept):
         certify_positions(stage.state.evaluation)
         study = checkpoint_of(gears, stage)
-        cost = call.cost(_timings(preparation, time.perf_counter() - begin), call.memory_MB())
+        cost = call.cost(preparing.then_solved(time.perf_counter() - begin), call.memory_MB())
         call.on_first(partial(_write, call, scene, gears, meshes, stage, study, cost))
         call.log.info(_log_line(stage))
         call.progress.reach(round(study.cycles))
     for sentence in operation_warnings(stage.vibrations):
         call.log.warning(sentence)
-    return meshes, _timings(preparation, time.perf_counter() - begin)
-
-
-def _timings(preparation: Preparation, seconds: float) -> Timings:
-    """Wall time of a study: whatever was not preparation was spent on blocks. seconds: of the whole study."""
-    timings = timings_of(preparation)
-    return replace(timings, positions=seconds - timings.total, total=seconds)
+    return meshes, preparing.then_solved(time.perf_counter() - begin)
 
 
 def law_of(wear: WearSection) -> Archard:

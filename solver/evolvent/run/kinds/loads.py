@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from evolvent.gears.shared_gears import SharedGears
-from evolvent.results.figures.loads_picture import LOADS_PICTURE
-from evolvent.results.tables.load_table import LOADS, RUNS, load_results
+from evolvent.results.drawing.table_pictures import TablePicture
+from evolvent.results.tables.load_table import LOADS, RUNS, LoadRuns, load_results
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.compute import compute
@@ -19,6 +19,8 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
+
+LOADS_PICTURE = TablePicture("loads.png", (LoadRuns(),), "evolvent.results.figures.load_list:loads_picture")
 
 
 @dataclass(frozen=True)

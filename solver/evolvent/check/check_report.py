@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from itertools import starmap
 from pathlib import Path
 
 from evolvent.check.form_rows import gear_lines, pair_lines
@@ -43,8 +42,8 @@ def overview(scene: Scene) -> str:
     pair, estimate = scene.gear_pair(), scene.hertz_estimate()
     blocks = [
         scene.title,
-        table("Gears", [*_gear_rows(pair), *starmap(Row, gear_lines(pair)), *_chart_rows(scene)], GEARS),
-        table("Pair", [*_pair_rows(pair), *starmap(Row, pair_lines(pair))]),
+        table("Gears", [*_gear_rows(pair), *gear_lines(pair), *_chart_rows(scene)], GEARS),
+        table("Pair", [*_pair_rows(pair), *pair_lines(pair)]),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
         *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
         *planned_tables(scene),

@@ -20,7 +20,7 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, i
 from evolvent.results.archive.archive import COARSE, Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
-from evolvent.results.run_data import RunData, run_data
+from evolvent.results.run_data import RunData, archived_run
 from evolvent.run.call import Call
 from evolvent.run.progress import ERROR_BARS, POSITIONS
 from evolvent.scene.gear_problem import gear_options, gear_problem, shares_gears
@@ -75,7 +75,7 @@ class KeptPitch:
 
     def run_data(self) -> RunData:
         """The pitch with its figures. On rank 0 alone. Raises ArchiveError."""
-        return run_data(self.scene, self.archive.read_gears(), self.archive.read_positions(self.scene.gear_pair()))
+        return replace(archived_run(self.archive), scene=self.scene)
 
 
 @dataclass(frozen=True)

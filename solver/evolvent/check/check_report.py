@@ -202,6 +202,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
     problem = gear_problem(scene)
     rows, layers = zip(*(flank_cells(problem, member) for member in Member))
     is_levelled = is_two_level(problem)
+    name = "positions, at least" if any(scene.contact.friction) else "positions"  # some are solved again with friction
     levels = [Row("degrees of freedom of a flank", "", "", tuple(map(counted, flank_dofs(scene))))]
     roots = [Row("with its finer roots, of `evolvent strength`", "", "", (gigabytes(strength_megabytes(scene)),))]
     return [
@@ -216,7 +217,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
         *(roots if scene.strength is not None else []),
         Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
         Row("tooth pairs that can touch", "", "", (str(len(problem.touching_teeth)),)),
-        Row(_positions_name(scene), "", "", (str(positions_to_solve(scene)),)),
+        Row(name, "", "", (str(problem.pitches * scene.sweep.positions),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),
     ]
 
@@ -225,13 +226,3 @@ def _room_line(scene: Scene) -> str:
     """Message on a scene that needs more memory than the machine has; empty where it fits."""
     problem = room_problem(scene, memory_megabytes)
     return "" if problem is None else f"\n\nToo large for this machine\n  {problem}"
-
-
-def _positions_name(scene: Scene) -> str:
-    """Name of the row with the number of positions: with friction some are solved more than once."""
-    return "positions, at least" if any(scene.contact.friction) else "positions"
-
-
-def positions_to_solve(scene: Scene) -> int:
-    """Number of positions of the sweep."""
-    return gear_problem(scene).pitches * scene.sweep.positions

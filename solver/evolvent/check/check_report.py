@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from itertools import starmap
 from pathlib import Path
 
 from evolvent.check.form_rows import gear_lines, pair_lines
@@ -43,8 +42,8 @@ def overview(scene: Scene) -> str:
     pair, estimate = scene.gear_pair(), scene.hertz_estimate()
     blocks = [
         scene.title,
-        table("Gears", [*_gear_rows(pair), *starmap(Row, gear_lines(pair)), *_chart_rows(scene)], GEARS),
-        table("Pair", [*_pair_rows(pair), *starmap(Row, pair_lines(pair))]),
+        table("Gears", [*_gear_rows(pair), *gear_lines(pair), *_chart_rows(scene)], GEARS),
+        table("Pair", [*_pair_rows(pair), *pair_lines(pair)]),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
         *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
         *planned_tables(scene),
@@ -67,7 +66,7 @@ def _skip_lines(scene: Scene) -> str:
 
 
 def _warning_lines(scene: Scene) -> list[str]:
-    warnings = scene_warnings(scene)
+    warnings = list(scene_warnings(scene))
     return ["\n".join(["Warnings", *(f"  {sentence}" for sentence in warnings)])] if warnings else []
 
 
@@ -203,6 +202,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
     problem = gear_problem(scene)
     rows, layers = zip(*(flank_cells(problem, member) for member in Member))
     is_levelled = is_two_level(problem)
+    name = "positions, at least" if any(scene.contact.friction) else "positions"  # some are solved again with friction
     levels = [Row("degrees of freedom of a flank", "", "", tuple(map(counted, flank_dofs(scene))))]
     roots = [Row("with its finer roots, of `evolvent strength`", "", "", (gigabytes(strength_megabytes(scene)),))]
     return [
@@ -217,7 +217,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
         *(roots if scene.strength is not None else []),
         Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
         Row("tooth pairs that can touch", "", "", (str(len(problem.touching_teeth)),)),
-        Row(_positions_name(scene), "", "", (str(positions_to_solve(scene)),)),
+        Row(name, "", "", (str(problem.pitches * scene.sweep.positions),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),
     ]
 
@@ -226,13 +226,3 @@ def _room_line(scene: Scene) -> str:
     """Message on a scene that needs more memory than the machine has; empty where it fits."""
     problem = room_problem(scene, memory_megabytes)
     return "" if problem is None else f"\n\nToo large for this machine\n  {problem}"
-
-
-def _positions_name(scene: Scene) -> str:
-    """Name of the row with the number of positions: with friction some are solved more than once."""
-    return "positions, at least" if any(scene.contact.friction) else "positions"
-
-
-def positions_to_solve(scene: Scene) -> int:
-    """Number of positions of the sweep."""
-    return gear_problem(scene).pitches * scene.sweep.positions

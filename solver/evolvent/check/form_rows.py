@@ -4,28 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from evolvent.check.text_table import Row
 from evolvent.scene.plain_text import fixed
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 
-Line = tuple[str, str, str, tuple[str, ...]]
-"""Name, symbol, unit and the values of pinion and wheel, or of both."""
 
-
-def gear_lines(pair: GearPair) -> list[Line]:
+def gear_lines(pair: GearPair) -> list[Row]:
     """Lines on the tooth form and body of both gears, each where one of the gears has the input that it follows from.
     """
     return [*_tip_edge(pair), *_protuberance(pair), *_thickness(pair), *_web(pair), *_support(pair)]
 
 
-def pair_lines(pair: GearPair) -> list[Line]:
+def pair_lines(pair: GearPair) -> list[Row]:
     """Line on the circumferential backlash; none where no tooth thickness allowance is given."""
     if not any(gear.tooth_thickness_allowance_um for gear in pair.gears):
         return []
-    return [("circumferential backlash", "j_wt", "µm", (fixed(1e3 * pair.circumferential_backlash, 2),))]
+    return [Row("circumferential backlash", "j_wt", "µm", (fixed(1e3 * pair.circumferential_backlash, 2),))]
 
 
-def _thickness(pair: GearPair) -> list[Line]:
+def _thickness(pair: GearPair) -> list[Row]:
     if not any(gear.tooth_thickness_allowance_um for gear in pair.gears):
         return []
     return [
@@ -37,7 +35,7 @@ def _thickness(pair: GearPair) -> list[Line]:
     ]
 
 
-def _tip_edge(pair: GearPair) -> list[Line]:
+def _tip_edge(pair: GearPair) -> list[Row]:
     lines = [
         _each(pair, name, symbol, "µm", 1, value)
         for name, symbol, value in (
@@ -57,19 +55,19 @@ def _tip_land(gear: GearParameters) -> float:
     return whole if edge is None else whole * edge.end[1] / gear.half_angle(gear.tip_diameter)
 
 
-def _protuberance(pair: GearPair) -> list[Line]:
+def _protuberance(pair: GearPair) -> list[Row]:
     if not any(gear.protuberance_um for gear in pair.gears):
         return []
     return [_each(pair, "residual protuberance of the rack", "s_pr", "µm", 1, lambda gear: gear.protuberance_um)]
 
 
-def _web(pair: GearPair) -> list[Line]:
+def _web(pair: GearPair) -> list[Row]:
     webs = [gear.thin_web for gear in pair.gears]
     if not any(webs):
         return []
 
-    def each(name: str, symbol: str, values: Iterable[float | None]) -> Line:
-        return name, symbol, "mm", tuple("–" if value is None else fixed(value, 3) for value in values)
+    def each(name: str, symbol: str, values: Iterable[float | None]) -> Row:
+        return Row(name, symbol, "mm", tuple("–" if value is None else fixed(value, 3) for value in values))
 
     return [
         each("rim, on a web", "s_R", (None if web is None else web.rim_thickness for web in webs)),
@@ -80,18 +78,18 @@ def _web(pair: GearPair) -> list[Line]:
     ]
 
 
-def _support(pair: GearPair) -> list[Line]:
+def _support(pair: GearPair) -> list[Row]:
     lines = []
     if any(gear.support.is_rim for gear in pair.gears):
         rims = tuple(fixed(gear.rim_thickness, 3) if gear.support.is_rim else "–" for gear in pair.gears)
-        lines.append(("rim, held at its inside", "s_R", "mm", rims))
+        lines.append(Row("rim, held at its inside", "s_R", "mm", rims))
     if any(gear.support.is_partial(gear.face_width) for gear in pair.gears):
         low, high = (tuple(fixed(gear.held_ends[i], 3) for gear in pair.gears) for i in (0, 1))
-        lines += [("bore held from", "z", "mm", low), ("  to", "", "mm", high)]
+        lines += [Row("bore held from", "z", "mm", low), Row("  to", "", "mm", high)]
     return lines
 
 
 def _each(
     pair: GearPair, name: str, symbol: str, unit: str, digits: int, value: Callable[[GearParameters], float]
-) -> Line:
-    return name, symbol, unit, tuple(fixed(value(gear), digits) for gear in pair.gears)
+) -> Row:
+    return Row(name, symbol, unit, tuple(fixed(value(gear), digits) for gear in pair.gears))

@@ -33,12 +33,8 @@ def levels_megabytes(sectors: Sequence[LevelledSector], ranks: int) -> float:
     patches = max(pinion, wheel) if ranks == 1 else pinion + wheel
     later = max(len(sector.levels) for sector in sectors) - 1
     positions = POSITION_PER_DOF * sum(size.flank for size in sizes) + POSITION_PER_LEVEL * later
-    return sum(map(_compliance_megabytes, sizes)) + max(patches, (SHARED + OWN * ranks) * positions)
-
-
-def _compliance_megabytes(size: LevelledSize) -> float:
-    """Memory [MB] of the compliance of a coarse sector's flank."""
-    return 8e-6 * size.sector.flank**2
+    compliances = sum(8e-6 * size.sector.flank**2 for size in sizes)
+    return compliances + max(patches, (SHARED + OWN * ranks) * positions)
 
 
 def _patch_megabytes(sector: LevelledSector, member: Member) -> float:

@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-from itertools import starmap
-
-from evolvent.check.text_table import Row, table
+from evolvent.check.text_table import table
 from evolvent.check.transient_rows import STEPS, step_lines, transient_lines
 from evolvent.scene.scene import GEARS, Scene
 from evolvent.scene.skips import wanted_output
@@ -22,7 +20,7 @@ def _vibration(scene: Scene) -> list[str]:
         return []
     from evolvent.check.vibration_rows import vibration_lines  # Numba takes a second to import
 
-    return [table("Vibration", starmap(Row, vibration_lines(scene, scene.dynamics)), GEARS)]
+    return [table("Vibration", vibration_lines(scene, scene.dynamics), GEARS)]
 
 
 def _transient(scene: Scene) -> list[str]:
@@ -30,8 +28,8 @@ def _transient(scene: Scene) -> list[str]:
         return []
     lines = transient_lines(scene, scene.transient, wanted_output(scene).error_bars)
     return [
-        table("Transient contact", starmap(Row, lines)),
-        table(STEPS[0], starmap(Row, step_lines(scene, scene.transient)), STEPS[1]),
+        table("Transient contact", lines),
+        table(STEPS[0], step_lines(scene, scene.transient), STEPS[1]),
     ]
 
 

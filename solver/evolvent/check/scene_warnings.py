@@ -23,17 +23,13 @@ from evolvent.scene.schema.dependence import effectless_keys
 from evolvent.scene.vibration_limits import doubtful
 
 
-def scene_warnings(scene: Scene) -> tuple[str, ...]:
-    """The warnings on a scene, one sentence each."""
-    return tuple(_expected(scene))
-
-
 def flank_warnings(problem: GearProblem) -> Iterator[str]:
     """Warnings on flanks and tips, one sentence each, before anything is computed."""
     yield from (*undercut_warnings(problem), *modification_warnings(problem), *tip_edge_warnings(problem))
 
 
-def _expected(scene: Scene) -> Iterator[str]:
+def scene_warnings(scene: Scene) -> Iterator[str]:
+    """The warnings on a scene, one sentence each."""
     yield from chart_warnings(scene)
     yield from effectless_keys(scene)
     problem = gear_problem(scene)

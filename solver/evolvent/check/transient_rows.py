@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from evolvent.check.planned_cost import most_time_steps, natural_modes, too_many_modes
+from evolvent.check.text_table import Row
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.resolved_vibration import unresolved
 from evolvent.gears.problem.gear_inertia import equivalent_mass
@@ -17,8 +18,6 @@ from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 
-Line = tuple[str, str, str, tuple[str, ...]]
-"""Name, symbol, unit and values."""
 STEPS = "Time steps at each speed", ("f_z [Hz]", "step [µs]", "steps/period")
 """Title of the table of `step_lines`, and the heads of its columns."""
 AT_COST = "each at the cost of a position or two"
@@ -37,30 +36,30 @@ class PlannedSteps:
     """Time steps in a natural period of the pair."""
 
 
-def transient_lines(scene: Scene, section: TransientSection, companion: bool) -> list[Line]:
+def transient_lines(scene: Scene, section: TransientSection, companion: bool) -> list[Row]:
     """Lines on the motions and time steps of a scene with [transient]. companion: whether error bars are asked for."""
     cases, positions = len(section.speeds_rpm) * len(scene.contact.friction), scene.sweep.positions
     steps, divided = str(positions), section.tolerance is not None
     modes = " and ".join(f"{float(f'{count:.2g}'):.0f}" for count in natural_modes(scene, section))
     most = most_time_steps(section, cases, positions, companion)
     return [
-        ("how the gears turn", "", "", (section.drive,)),
-        ("speeds × friction coefficients", "", "", (f"{len(section.speeds_rpm)} × {len(scene.contact.friction)}",)),
-        ("motions", "", "", (str(cases),)),
-        *([("  with those of coarser gears, for error bars", "", "", (str(3 * cases),))] if companion else []),
-        ("mesh periods of each, at most", "", "", (str(section.mesh_periods),)),
-        ("time steps in a mesh period" + (", at least" if divided else ""), "", "", (steps,)),
-        *([("  each of which is divided by, at most", "", "", (str(section.most_parts),))] if divided else []),
-        ("natural modes of pinion and wheel, about", "", "", (modes,)),
-        (f"time steps in all, at most, {AT_COST}", "", "", (f"{most:,}",)),
-        (f"natural frequency {BY_ISO}", "f_n", "Hz", (f"{natural_frequency(scene, section):.4g}",)),
+        Row("how the gears turn", "", "", (section.drive,)),
+        Row("speeds × friction coefficients", "", "", (f"{len(section.speeds_rpm)} × {len(scene.contact.friction)}",)),
+        Row("motions", "", "", (str(cases),)),
+        *([Row("  with those of coarser gears, for error bars", "", "", (str(3 * cases),))] if companion else []),
+        Row("mesh periods of each, at most", "", "", (str(section.mesh_periods),)),
+        Row("time steps in a mesh period" + (", at least" if divided else ""), "", "", (steps,)),
+        *([Row("  each of which is divided by, at most", "", "", (str(section.most_parts),))] if divided else []),
+        Row("natural modes of pinion and wheel, about", "", "", (modes,)),
+        Row(f"time steps in all, at most, {AT_COST}", "", "", (f"{most:,}",)),
+        Row(f"natural frequency {BY_ISO}", "f_n", "Hz", (f"{natural_frequency(scene, section):.4g}",)),
     ]
 
 
-def step_lines(scene: Scene, section: TransientSection) -> list[Line]:
+def step_lines(scene: Scene, section: TransientSection) -> list[Row]:
     """Lines on the time steps, one for each speed."""
     return [
-        (f"{each.speed.rpm:g} r/min", "", "", (
+        Row(f"{each.speed.rpm:g} r/min", "", "", (
             f"{each.speed.mesh_frequency:.4g}", f"{1e6 * each.length:.4g}", f"{each.a_period:.3g}"))
         for each in planned_steps(scene, section)
     ]

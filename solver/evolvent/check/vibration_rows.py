@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from evolvent.check.planned_cost import SWEEPS, shown_time, speeds_time
+from evolvent.check.text_table import Row
 from evolvent.dynamics.of_scene import drive_settings, refusals
 from evolvent.dynamics.pair_model import lacking_room
 from evolvent.gears.problem.gear_inertia import added_inertia, equivalent_mass, polar_moment
@@ -13,13 +14,11 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
 
-Line = tuple[str, str, str, tuple[str, ...]]
-"""Name, symbol, unit and the values of pinion and wheel, or of both."""
 NOBODYS = "none is given"
 WITH_OTHERS = "with those on other excitations, for error bars"
 
 
-def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
+def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Row]:
     """Lines on the inertia, damping, backlash and speeds of a scene with [dynamics]."""
     problem, count = gear_problem(scene), scene.sweep.positions
     settings = drive_settings(problem.pair, section)
@@ -35,19 +34,19 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
     swept = ["by default", *(f"{speed:g}" for speed in section.speed_rpm or ())]
     named = unnamed_backlash(problem.pair, section.backlash_um) is None
     return [
-        ("moment of inertia", "I", "kg·m²", tuple(f"{1e-3 * each:.4g}" for each in settings.inertias)),
-        ("  at the bore, beyond the body's", "", "kg·m²", tuple(f"{1e-3 * each:.3g}" for each in added)),
-        ("equivalent mass along the line of action", "m_e", "kg", (f"{1e3 * mass:.4g}",)),
-        ("gear bodies", "", "", (section.bodies,)),
-        ("damping ratio", "ζ", "", (f"{settings.damping_ratio:g}",)),
-        ("backlash along the line of action", "j", "µm", (f"{1e3 * settings.backlash:.4g}" if named else NOBODYS,)),
-        ("  lacking for unloaded errors", "", "µm", (f"{1e3 * lacking_room(problem, count, settings):.3g}",)),
-        ("natural speed by c_γα of ISO 6336-1", "n_E1", "r/min", (f"{iso.resonance_speed:.4g}",)),
-        ("speeds", "n", "r/min", tuple(swept[1:] or swept[:1])),
-        ("positions × torques of the excitation", "", "", (f"{count} × {len(section.torque_percents)}",)),
-        ("speeds, up and down", "", "", (str(section.speeds),)),
-        *([(f"  {WITH_OTHERS}", "", "", (str(SWEEPS * section.speeds),))] if bars else []),
-        ("processor time of the speeds, roughly", "", "", (shown_time(speeds_time(natural, section, bars)),)),
+        Row("moment of inertia", "I", "kg·m²", tuple(f"{1e-3 * each:.4g}" for each in settings.inertias)),
+        Row("  at the bore, beyond the body's", "", "kg·m²", tuple(f"{1e-3 * each:.3g}" for each in added)),
+        Row("equivalent mass along the line of action", "m_e", "kg", (f"{1e3 * mass:.4g}",)),
+        Row("gear bodies", "", "", (section.bodies,)),
+        Row("damping ratio", "ζ", "", (f"{settings.damping_ratio:g}",)),
+        Row("backlash along the line of action", "j", "µm", (f"{1e3 * settings.backlash:.4g}" if named else NOBODYS,)),
+        Row("  lacking for unloaded errors", "", "µm", (f"{1e3 * lacking_room(problem, count, settings):.3g}",)),
+        Row("natural speed by c_γα of ISO 6336-1", "n_E1", "r/min", (f"{iso.resonance_speed:.4g}",)),
+        Row("speeds", "n", "r/min", tuple(swept[1:] or swept[:1])),
+        Row("positions × torques of the excitation", "", "", (f"{count} × {len(section.torque_percents)}",)),
+        Row("speeds, up and down", "", "", (str(section.speeds),)),
+        *([Row(f"  {WITH_OTHERS}", "", "", (str(SWEEPS * section.speeds),))] if bars else []),
+        Row("processor time of the speeds, roughly", "", "", (shown_time(speeds_time(natural, section, bars)),)),
     ]
 
 

@@ -12,7 +12,7 @@ import typer
 from evolvent.commands.command import Command
 from evolvent.commands.exit import reported
 from evolvent.commands.options import ExactParts, Force, LevelOption, Overrides, SceneFile, given_number, given_path
-from evolvent.commands.scene_argument import loaded_scene, require, require_room
+from evolvent.commands.scene_argument import loaded_scene, require, require_room, warn
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.files import require_writable, write_bytes
 
@@ -102,8 +102,7 @@ def plot(
         from evolvent.run.kinds.redraw import plot_folder
 
         drawn = plot_folder(directory)
-        for failure in drawn.failures:
-            typer.echo(f"evolvent: warning: {failure}", err=True)
+        warn(drawn.failures)
         typer.echo(f"{len(drawn.written)} pictures in {directory / 'pictures'}")
 
 
@@ -133,7 +132,7 @@ def wear_coefficient(
             f"{test.pressure:.3f} MPa {rate:.4g} µm per km"
         )
         if estimate.low <= 0.0:
-            typer.echo("evolvent: warning: the interval reaches below 0, which no K/H can: give more records", err=True)
+            warn(["the interval reaches below 0, which no K/H can: give more records"])
 
 
 def info() -> None:

@@ -88,8 +88,7 @@ def study(
 
             return scheduled_workers(scheduler, out.absolute())
 
-        for sentence in run_study(planned, out.absolute(), computing, 0 if force else at_once, overwrite, quiet):
-            typer.echo(f"evolvent: warning: {sentence}", err=True)
+        warn(run_study(planned, out.absolute(), computing, 0 if force else at_once, overwrite, quiet))
         if not quiet:
             typer.echo(f"done: {out / 'study.csv'}, a row for each of {len(planned.scenes)} scenes")
 

@@ -28,7 +28,7 @@ def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
 
 def secant_stiffness(run: RunData, solved: SolvedPosition) -> float:
     """Secant stiffness T_1/(r_b1 b) over the transmission error [N/(mm·µm)]; modifications of the flanks count as
-    deflection. NaN where a flank has a chart: which part of the transmission error is missing material is not known.
+    deflection.
 
     NaN where a flank has a chart: which part of the transmission error is missing material is not known.
     """

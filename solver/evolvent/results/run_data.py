@@ -144,9 +144,14 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
     return RunData(scene, shapes, tuple(tuple(solved(r) for r in position.results) for position in swept))
 
 
+def archived_run(archive: Archive) -> RunData:
+    """The run in an archive, without error bars. Raises ArchiveError."""
+    scene = archive.scene
+    return run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+
+
 def read_run(folder: Path) -> RunData:
     """The run in the folder OUT, from OUT/scene.toml and OUT/results. Raises SceneError, ArchiveError."""
-    scene = kept_scene(folder / "scene.toml")
-    archive = Archive(folder, scene)
-    run = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+    archive = Archive(folder, kept_scene(folder / "scene.toml"))
+    run = archived_run(archive)
     return replace(run, errors=requested_error_bars(archive) or run.errors)

@@ -7,8 +7,9 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from mpi4py import MPI
 
@@ -19,7 +20,7 @@ from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_cost import Cost, Timings, read_cost, write_cost
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.archive.scene_files import SCENE_FILES, scene_texts, write_scene
+from evolvent.results.archive.scene_files import SCENE_FILES, holds_scene, write_scene
 from evolvent.run.companion import Attempt, attempted
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, Progress
 from evolvent.run.run_log import RunLog, logged
@@ -128,10 +129,25 @@ class Call:
         self.log.open()
         if not resumed:
             self.folder.clear(keep=[self.folder.out / name for name in SCENE_FILES])
-        elif not _has(self.folder.out, scene):
+        elif not holds_scene(self.folder.out, scene):
             self.folder.remove(self.replaced)
         write_scene(scene, self.folder)
         write_cost(self.folder, self.cost(Timings(), 0.0))
+
+    @contextmanager
+    def beginning(self, scene: Scene, prepare: Preparer) -> Iterator[Preparer]:
+        """Context with a function that prepares gears as `prepare` does. The folder of the scene begins once the first
+        gears are condensed or, where all results are stored, at the end of the context. Collective; raises as `begin`.
+        """
+        begin = cache(lambda: self.on_first(lambda: self.begin(scene, self.resume)))
+
+        def prepared(*arguments: Any, **options: Any) -> Preparation:
+            made: Preparation = prepare(*arguments, **options)
+            begin()
+            return made
+
+        yield prepared
+        begin()
 
     def memory_MB(self) -> float:
         """Largest resident memory of the call so far [MB], summed over the ranks. Collective."""
@@ -166,9 +182,3 @@ def opened_call(
 def peak_memory_MB() -> float:
     """Largest resident memory of this process so far [MB]."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-
-
-def _has(out: Path, scene: Scene) -> bool:
-    """Whether the folder holds the files of this scene."""
-    paths = {out / name: text for name, text in scene_texts(scene).items()}
-    return all(path.is_file() and path.read_bytes() == text.encode() for path, text in paths.items())

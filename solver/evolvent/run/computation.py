@@ -51,6 +51,9 @@ class Results:
     """Pictures beyond those from tables alone."""
     timings: Timings = field(default_factory=Timings)
     """Wall time of the stages before the output [s]."""
+    complete: Callable[[Callable[[], Cost]], None] = lambda cost: None
+    """Writes further files once tables and pictures are there. It is given a function that returns the cost of all that
+    was computed so far. Raises WriteError, FolderError."""
 
 
 @dataclass(frozen=True)
@@ -94,11 +97,7 @@ class Computation(ABC, Generic[Solved]):
 
     @abstractmethod
     def results(self, call: Call, solved: Solved) -> Results:
-        """Tables, warnings and further pictures of the solution. On rank 0 alone."""
-
-    def complete(self, call: Call, results: Results, cost: Callable[[], Cost]) -> None:
-        """Writes further files once tables and pictures are there. On rank 0 alone. cost: returns that of all that was
-        computed so far. Raises WriteError, FolderError."""
+        """Tables, warnings, further pictures and files of the solution. On rank 0 alone."""
 
     def pictures(self, out: Path) -> Iterable[Picture]:
         """Pictures of a finished computation, to be drawn again from its folder. Raises SceneError, ArchiveError."""

@@ -76,7 +76,7 @@ def _write(call: Call, what: Computation[Solved], solved: Solved, memory: float)
         each.write(folder)
     folder.remove(set(what.outputs.tables) - {each.name for each in results.tables})
     _log_pictures(_drawn(call, what, results), call.log)
-    what.complete(call, results, cost)
+    results.complete(cost)
     write_cost(folder, cost())
     for sentence in results.warnings:
         call.log.warning(sentence)

@@ -10,10 +10,10 @@ from typing import Any
 from evolvent.results.archive.run_cost import FILE as COST
 from evolvent.results.archive.run_cost import read_cost
 from evolvent.results.archive.run_folder import LOG, FolderError, RunFolder
-from evolvent.results.archive.scene_files import SCENE_FILES, scene_texts
+from evolvent.results.archive.scene_files import SCENE_FILES, holds_scene, scene_texts
 from evolvent.run.call import Options
 from evolvent.run.computation import Computation
-from evolvent.scene.scene import GEARS, Scene, kept_scene
+from evolvent.scene.scene import GEARS, Scene
 
 COMMON = (str(LOG), *SCENE_FILES, str(COST))
 """Files that every computation writes."""
@@ -95,7 +95,7 @@ def _keep_sources(scene: Scene, folder: RunFolder, source: Path | None) -> None:
     charts = [getattr(scene, name).flank_csv for name in GEARS]
     sources = [path for path in (source, *(Path(chart) for chart in charts if chart)) if path is not None]
     texts, kept = scene_texts(scene), folder.out / "scene.toml"
-    if kept in sources and folder.is_written(kept) and scene_texts(kept_scene(kept)) == texts:
+    if kept in sources and folder.is_written(kept) and holds_scene(folder.out, scene):
         return  # this scene as a run has written it, perhaps with the names of an earlier version
     for name in SCENE_FILES:
         path = folder.out / name

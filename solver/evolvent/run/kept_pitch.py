@@ -20,7 +20,7 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, i
 from evolvent.results.archive.archive import COARSE, Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
-from evolvent.results.run_data import RunData, run_data
+from evolvent.results.run_data import RunData, archived_run
 from evolvent.run.call import Call
 from evolvent.run.progress import ERROR_BARS, POSITIONS
 from evolvent.scene.gear_problem import gear_options, gear_problem, shares_gears
@@ -75,7 +75,7 @@ class KeptPitch:
 
     def run_data(self) -> RunData:
         """The pitch with its figures. On rank 0 alone. Raises ArchiveError."""
-        return run_data(self.scene, self.archive.read_gears(), self.archive.read_positions(self.scene.gear_pair()))
+        return replace(archived_run(self.archive), scene=self.scene)
 
 
 @dataclass(frozen=True)
@@ -170,9 +170,9 @@ class _Sweep:
         begin = time.perf_counter()
         solved = self._group(self.groups[0]) if len(self.groups) == 1 else self._joined_groups()
         for position in solved:
-            self.timings = self._timings(begin)
+            self.timings = self.preparing.then_solved(time.perf_counter() - begin)
             yield position
-        self.timings = self._timings(begin)
+        self.timings = self.preparing.then_solved(time.perf_counter() - begin)
 
     def keep(self, position: SweptPosition) -> None:
         """Stores and logs a position of `generate`, unless it has been stored before. Collective; raises WriteError,
@@ -182,7 +182,7 @@ class _Sweep:
             return
         memory = self.call.memory_MB()
         self.call.on_first(partial(self._store, self.kept - 1, position, memory))
-        self.call.progress.position(position)
+        self.call.progress.advance(more=not position.closes)
 
     def deflected(self) -> _Sweep:
         """The sweep to make after this one, on the same gears, where its energy does not balance."""
@@ -246,11 +246,6 @@ class _Sweep:
         if not self.meshes.part:
             write_cost(self.call.folder, self.call.cost(self.timings, memory))
             self.call.log.info(_log_line(position))
-
-    def _timings(self, begin: float) -> Timings:
-        """Wall time since `begin`: whatever was not preparation was solving."""
-        seconds = time.perf_counter() - begin
-        return replace(self.preparing, positions=seconds - self.preparing.total, total=seconds)
 
 
 def checked_meshes(problem: GearProblem, archive: Archive, mesh: Mesher = run_mesh) -> MeshRecord:

@@ -13,8 +13,6 @@ from rich.progress import BarColumn, ProgressColumn, SpinnerColumn, Task, TextCo
 from rich.progress import Progress as Bars
 from rich.text import Text
 
-from evolvent.gears.sweep.pitch_sweep import SweptPosition
-
 MESHING, CONDENSING, POSITIONS, CYCLES = "meshing", "condensing", "positions", "cycles of wear"
 ERROR_BARS, DEFORMATION, OUTPUT = "error bars", "deformation", "tables and pictures"
 VIBRATION = "vibration"
@@ -69,10 +67,6 @@ class Progress:
         if task is not None:
             done = round(task.completed) + 1
             self._show(task, done, max(task.total or 0.0, done + more))
-
-    def position(self, solved: SweptPosition) -> None:
-        """Counts a position of a sweep as done; more follow until one closes the pitch."""
-        self.advance(more=not solved.closes)
 
     def reach(self, done: int) -> None:
         """Sets the number of items that are done."""

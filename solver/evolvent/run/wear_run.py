@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.operation_figures import operation_warnings
-from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
+from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.solution.certificates import certify, certify_pitch
-from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.run_data import run_data
+from evolvent.results.run_data import archived_run
 from evolvent.results.tables.tables import summary, write_tables
 from evolvent.run.call import Call
-from evolvent.run.kept_pitch import checked_meshes, timings_of
+from evolvent.run.kept_pitch import checked_meshes, pitch_of, timings_of
 from evolvent.run.output import facts_of
 from evolvent.run.progress import CYCLES
 from evolvent.scene.gear_problem import gear_problem
@@ -55,10 +53,10 @@ def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tu
             call.on_first(lambda: call.begin(scene, resumed=True))
             return meshes, Timings()
     preparation = call.gears(gear_problem(scene))
+    preparing = timings_of(preparation)
     if kept is not None:
         call.on_first(lambda: call.begin(scene, resumed=True))
-    pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
-    μ = scene.contact.friction[0]
+    pitch, μ = pitch_of(scene), scene.contact.friction[0]
     motion = mesh_motion_of(call, scene)
     gears = GearWear(preparation.model, pitch, μ, law_of(wear), call.comm, motion, operating)
     meshes = MeshRecord.of([MeshedGear.of(body) for body in preparation.model.bodies])
@@ -66,19 +64,13 @@ def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tu
     for stage in study_states(gears, wear.reports, settings_of(wear), kept):
         certify_positions(stage.state.evaluation)
         study = checkpoint_of(gears, stage)
-        cost = call.cost(_timings(preparation, time.perf_counter() - begin), call.memory_MB())
+        cost = call.cost(preparing.then_solved(time.perf_counter() - begin), call.memory_MB())
         call.on_first(partial(_write, call, scene, gears, meshes, stage, study, cost))
         call.log.info(_log_line(stage))
         call.progress.reach(round(study.cycles))
     for sentence in operation_warnings(stage.vibrations):
         call.log.warning(sentence)
-    return meshes, _timings(preparation, time.perf_counter() - begin)
-
-
-def _timings(preparation: Preparation, seconds: float) -> Timings:
-    """Wall time of a study: whatever was not preparation was spent on blocks. seconds: of the whole study."""
-    timings = timings_of(preparation)
-    return replace(timings, positions=seconds - timings.total, total=seconds)
+    return meshes, preparing.then_solved(time.perf_counter() - begin)
 
 
 def law_of(wear: WearSection) -> Archard:
@@ -125,7 +117,7 @@ def _write(
         worn = write_worn(scene, folder, gears, state.depth)
         worn_archive = Archive(folder, worn)
         write_pitch(worn_archive, meshes.shapes, state.evaluation.positions)
-        data = run_data(worn, worn_archive.read_gears(), worn_archive.read_positions(worn.gear_pair()))
+        data = archived_run(worn_archive)
         write_tables(worn_archive.files, summary(data, facts_of(data, meshes, call.comm.size, cost)))
         write_cost(worn_archive.files, cost)
     write_checkpoint(archive, study)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from evolvent.scene.scene import GEARS, Scene, derived_values
+from evolvent.scene.scene_text import flat_keys
 from evolvent.scene.schema.errors import shown
 from evolvent.scene.schema.old_names import first_names
 from evolvent.scene.schema.output import ExactSection, OutputSection
@@ -50,19 +50,11 @@ def differences(kept: Scene, wanted: Scene) -> str:
 
 def _differing(kept: Scene, wanted: Scene) -> list[str]:
     """Each differing key with both values."""
-    there, here = (_flat(essence(scene).model_dump()) for scene in (kept, wanted))
+    there, here = (flat_keys(essence(scene).model_dump()) for scene in (kept, wanted))
     keys = [key for key in {**there, **here} if there.get(key) != here.get(key)]
     values = [f"{key} = {_said(here.get(key))} (kept: {_said(there.get(key))})" for key in keys]
     both = zip(GEARS, charts(kept), charts(wanted))
     return values + [f"another chart as {name}.flank_csv" for name, one, other in both if one != other]
-
-
-def _flat(section: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Nested values by dotted keys."""
-    flat: dict[str, Any] = {}
-    for name, value in section.items():
-        flat |= _flat(value, f"{prefix}{name}.") if isinstance(value, Mapping) else {f"{prefix}{name}": value}
-    return flat
 
 
 def _said(value: Any) -> str:

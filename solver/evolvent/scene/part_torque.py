@@ -23,10 +23,7 @@ def with_percents(scene: Scene, percents: Sequence[float]) -> Scene:
 
 def under_torque(scene: Scene, torque: float, mesh_torques: tuple[float, float] | None = None) -> Scene:
     """The scene under another torque [N·m], on meshes for a range of torques [N·m] or for this one alone. Raises
-    SceneError, whose message names the refused part of the scene's own torque.
-
-    Raises SceneError, which says what part of the scene's own torque is refused.
-    """
+    SceneError, which says what part of the scene's own torque is refused."""
     values = scene.model_dump(exclude_none=True)
     load = {name: value for name, value in values["load"].items() if name != "mesh_torques_Nm"}
     served = {} if mesh_torques is None else {"mesh_torques_Nm": mesh_torques}

@@ -267,9 +267,9 @@ def scene_from_text(
         raise SceneError(error.problems, source) from error.__cause__
 
 
-def scene_from_values(values: Mapping[str, Any], warn: Warn = future_warning) -> Scene:
+def scene_from_values(values: Mapping[str, Any]) -> Scene:
     """A scene from nested dictionaries; see load_scene."""
     try:
-        return Scene.model_validate(new_sections(values, warn))
+        return Scene.model_validate(new_sections(values, future_warning))
     except ValidationError as error:
         raise SceneError(problems_of(error, Scene)) from error

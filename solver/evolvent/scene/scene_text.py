@@ -172,6 +172,16 @@ def _put(values: dict[str, Any], name: str, value: Any) -> None:
     table[names[-1]] = value
 
 
+def flat_keys(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested tables as one with dotted keys, {"load": {"torque_Nm": 1}} -> {"load.torque_Nm": 1}; an empty table is a
+    value."""
+    flat: dict[str, Any] = {}
+    for name, value in values.items():
+        inner = isinstance(value, Mapping) and value
+        flat |= flat_keys(value, f"{prefix}{name}.") if inner else {f"{prefix}{name}": value}
+    return flat
+
+
 def _parsed(name: str, text: str) -> Any:
     """The value of an override, TOML or text without quotes. Raises SceneError."""
     try:

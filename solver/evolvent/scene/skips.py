@@ -53,10 +53,6 @@ def _always(_: Scene) -> bool:
     return True
 
 
-def _has_frictionless(scene: Scene) -> bool:
-    return 0.0 in scene.contact.friction
-
-
 def _pitch_sentence(scene: Scene) -> str:
     pair = scene.gear_pair()
     pitch, whole = 360 / pair.pinion.z, math.degrees(pair.engagement_angle)
@@ -125,7 +121,7 @@ SKIPS: tuple[Skip, ...] = (
     ),
     Skip(
         "friction-terms",
-        _has_frictionless,
+        lambda scene: 0.0 in scene.contact.friction,
         lambda _: "Friction terms where μ = 0: normal components only, no friction history.",
         tolerance=ROUND_OFF,  # the same equations, the tangential ones decoupled
     ),

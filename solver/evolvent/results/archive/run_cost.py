@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, astuple, dataclass, fields
+from dataclasses import asdict, astuple, dataclass, fields, replace
 from pathlib import Path
 
 from evolvent.results.archive.run_folder import RunFolder
@@ -38,6 +38,10 @@ class Timings:
 
     def __add__(self, other: Timings) -> Timings:
         return Timings(*(one + more for one, more in zip(astuple(self), astuple(other))))
+
+    def then_solved(self, seconds: float) -> Timings:
+        """Wall time of a preparation, with that of the solution after it. seconds: of both."""
+        return replace(self, positions=seconds - self.total, total=seconds)
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.scene import GEARS, Scene, SceneError, kept_scene
 
 SCENE_FILES = ("flank_pinion.csv", "flank_wheel.csv", "scene.toml")
 """Files of the scene in OUT."""
@@ -19,6 +20,14 @@ def write_scene(scene: Scene, folder: RunFolder) -> None:
             folder.write_text(name, texts[name])
         elif folder.is_written(folder.out / name):
             (folder.out / name).unlink()
+
+
+def holds_scene(out: Path, scene: Scene) -> bool:
+    """Whether the scene in OUT is this one, by whatever names its version had."""
+    try:
+        return scene_texts(kept_scene(out / "scene.toml")) == scene_texts(scene)
+    except SceneError:
+        return False
 
 
 def scene_texts(scene: Scene) -> dict[str, str]:

@@ -62,7 +62,7 @@ def spacing_errors(run: RunData, index: int) -> FigureErrors:
     error, tangent, secant, loss = (
         _values(run, index, value) for value in (transmission_error_um, mesh_stiffness, secant_stiffness, loss_percent)
     )
-    largest = _apart(_largest(whole), [_largest(curve) for curve in thin])
+    largest = _apart(whole.peak.pressure, [curve.peak.pressure for curve in thin])
     mean = [_mean(curve.mean_pressure, shares(kept, count)[curve.position]) for curve, kept in zip(thin, halves)]
     scattered, excess = SCATTERS * scatter(whole.max_pressure), _excess(run, whole)
     return FigureErrors(
@@ -145,7 +145,7 @@ def _excess(run: RunData, curve: Engagement) -> float:
     tip-edge zones."""
     step = run.pitch / len(run.positions)
     ends = [end.pressure + step * _rise(curve, end) for end in curve.zone_ends if end.at_zone_end]
-    largest = _largest(curve)
+    largest = curve.peak.pressure
     return float(np.nanmax([largest, *tops(curve.pressure_curve, jumps=True), *ends])) - largest
 
 
@@ -190,11 +190,6 @@ def _apart(whole: float, thinned: Sequence[float]) -> float:
 def _larger(*estimates: float) -> float:
     """The largest estimate that is known; NaN where none is."""
     return float(np.fmax.reduce(estimates))
-
-
-def _largest(curve: Engagement) -> float:
-    """The largest pressure of an engagement [MPa]; NaN where none is known."""
-    return curve.peak.pressure
 
 
 def _mean(values: Floats, weights: Floats | None = None) -> float:

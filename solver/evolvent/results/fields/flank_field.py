@@ -13,7 +13,7 @@ import numpy as np
 
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.fields.polygons import Polygons
-from evolvent.results.run_data import RunData
+from evolvent.results.run_data import RunData, flank_nodes
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.member import Member
@@ -102,9 +102,6 @@ class Patch:
 
 def flank_patch(run: RunData, gear: Member, count: tuple[int, int] = (420, 160)) -> Patch:
     """The whole meshed flank of a gear. count: numbers of points along the profile and across the face."""
-    shape = run.shapes[gear]
-    points = shape.points[shape.flank_nodes]
-    base = run.pair.gears[gear].base_radius
-    ρ = np.sqrt(np.maximum(np.hypot(points[:, 0], points[:, 1]) ** 2 - base**2, 0.0))
+    ρ = flank_nodes(run.pair.gears[gear], run.shapes[gear]).roll_length
     half = 0.5 * run.pair.gears[gear].face_width
     return Patch(gear, np.linspace(ρ.min(), ρ.max(), count[0]), np.linspace(-half, half, count[1]))

@@ -21,6 +21,7 @@ that of the flanks. Flanks of the wheel have pressures only.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -54,19 +55,25 @@ Arrays = dict[str, Floats]
 
 def write_fields(run: RunData, folder: RunFolder) -> Path:
     """Writes the series of a run to OUT/fields; returns the .pvd file. Raises WriteError, FolderError."""
-    collection = ElementTree.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
-    series = ElementTree.SubElement(collection, "Collection")
+    files = []
     for k, each in enumerate(run.positions):
         flanks, arrays = flank_fields(run, each)
         gears = surrounding(run, each[0].result)
         for part, (name, surface, values) in enumerate((("flanks", flanks, arrays), ("gears", gears, {}))):
             file = f"{name}_{k:04d}.vtp"
             folder.write(f"fields/{file}", vtp_bytes(surface, values))
-            degrees = f"{np.degrees(run.angles[k]):.6f}"
-            ElementTree.SubElement(series, "DataSet", timestep=degrees, group="", part=str(part), name=name, file=file)
+            files.append((run.angles[k], {"part": str(part), "name": name, "file": file}))
+    return folder.write_text("fields/contact.pvd", series_text(files))
+
+
+def series_text(files: Sequence[tuple[float, dict[str, str]]]) -> str:
+    """Text of a .pvd file. files: pinion rotation [rad] and attributes of each file of the series."""
+    collection = ElementTree.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
+    series = ElementTree.SubElement(collection, "Collection")
+    for angle, attributes in files:
+        ElementTree.SubElement(series, "DataSet", {"timestep": f"{np.degrees(angle):.6f}", "group": "", **attributes})
     ElementTree.indent(collection)
-    text = ElementTree.tostring(collection, encoding="unicode")
-    return folder.write_text("fields/contact.pvd", f'<?xml version="1.0"?>\n{text}\n')
+    return f'<?xml version="1.0"?>\n{ElementTree.tostring(collection, encoding="unicode")}\n'
 
 
 def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Polygons, Arrays]:

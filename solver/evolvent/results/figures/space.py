@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -75,18 +73,11 @@ def _image(axes: Axes, image: NDArray[np.uint8], title: str) -> None:
     axes.axis("off")
 
 
-def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: None) -> bytes:
+def animation(run: RunData, index: int = 0) -> bytes:
     """The content of a GIF file with one pitch. It repeats without a seam, since after a pitch every tooth has reached
-    the place of the one ahead of it.
-
-    step: called after each frame.
-    """
+    the place of the one ahead of it."""
     curve, top = engagement(run, index), pressure_top(run, index)
-    frames = []
-    for k in range(len(run.positions)):
-        frames.append(_frame(run, index, k, curve, top))
-        step()
-    return gif(frames)
+    return gif([_frame(run, index, k, curve, top) for k in range(len(run.positions))])
 
 
 def _largest(row: PositionRow) -> str:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from evolvent.gears.shared_gears import SharedGears
-from evolvent.results.figures.loads_picture import LOADS_PICTURE
-from evolvent.results.tables.load_table import LOADS, RUNS, load_results
+from evolvent.results.drawing.table_pictures import TablePicture
+from evolvent.results.tables.load_table import LOADS, RUNS, LoadRuns, load_results
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.compute import compute
@@ -19,6 +19,8 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
+
+LOADS_PICTURE = TablePicture("loads.png", (LoadRuns(),), "evolvent.results.figures.load_list:loads_picture")
 
 
 @dataclass(frozen=True)
@@ -53,10 +55,10 @@ class Loads(Computation[None]):
     def solve(self, call: Call) -> None:
         """Computes the runs; those that are complete stay. Collective; raises what `compute` does."""
         call.on_first(lambda: self._check_folders(call))
-        call.on_first(lambda: call.begin(self.scene, resumed=call.resume))
         gears = SharedGears([gear_problem(run.scene) for run in self.runs.values()])
-        for name, run in self.runs.items():
-            compute(run, call.folder.out / name, replace(call.options, prepare=gears.prepare, label=name))
+        with call.beginning(self.scene, gears.prepare) as prepare:
+            for name, run in self.runs.items():
+                compute(run, call.folder.out / name, replace(call.options, prepare=prepare, label=name))
 
     def results(self, call: Call, solved: None) -> Results:
         """The table of all runs."""

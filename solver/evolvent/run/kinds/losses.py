@@ -83,9 +83,10 @@ class Losses(Computation[list[SolvedPitches]]):
     def solve(self, call: Call) -> list[SolvedPitches]:
         """Both pitches under each torque, on gears that are condensed once, see `Computation.solve`."""
         parts = {PART.format(number): scene for number, scene in enumerate(self.sized)}
-        call.on_first(lambda: self._begin(call, parts))
-        shared = call.preparing(SharedGears([gear_problem(scene) for scene in parts.values()]).prepare)
-        return [solved_pitches(shared, scene, part) for part, scene in parts.items()]
+        call.on_first(lambda: self._check_parts(call, parts))
+        gears = SharedGears([gear_problem(scene) for scene in parts.values()])
+        with call.beginning(self.scene, gears.prepare) as prepare:
+            return [solved_pitches(call.preparing(prepare), scene, part) for part, scene in parts.items()]
 
     def results(self, call: Call, solved: list[SolvedPitches]) -> Results:
         """The table of all torques."""
@@ -95,13 +96,11 @@ class Losses(Computation[list[SolvedPitches]]):
         rows = [row for run in runs for row in _rows(run)]
         return Results(self.scene, [LOSSES.of(rows)], [*[ON_DEFLECTED] * mended, *reasons])
 
-    def _begin(self, call: Call, parts: Mapping[str, Scene]) -> None:
-        """Prepares the folder. On rank 0 alone. Raises ArchiveError, before anything is removed, where stored positions
-        belong to another scene. parts: of the archive, with the scene under each torque."""
-        if call.resume:
-            for part, scene in parts.items():
-                require_resumable(scene, call.folder.out, self.command, part)
-        call.begin(self.scene, resumed=call.resume)
+    def _check_parts(self, call: Call, parts: Mapping[str, Scene]) -> None:
+        """Raises ArchiveError, before anything is removed, where stored positions belong to another scene. On rank 0
+        alone. parts: of the archive, with the scene under each torque."""
+        for part, scene in parts.items() if call.resume else ():
+            require_resumable(scene, call.folder.out, self.command, part)
 
 
 def _rows(run: RunData) -> Iterator[LossRow]:

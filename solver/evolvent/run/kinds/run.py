@@ -24,7 +24,7 @@ from evolvent.results.drawing.picture_files import Picture
 from evolvent.results.drawing.table_pictures import from_tables
 from evolvent.results.error_bars.estimation import with_errors
 from evolvent.results.fields.deformation import Deformation, deformation_of
-from evolvent.results.run_data import RunData, read_run, run_data
+from evolvent.results.run_data import RunData, archived_run, read_run
 from evolvent.results.tables.summary_rows import Summary
 from evolvent.results.tables.table import Filled
 from evolvent.results.tables.tables import summary, write_summary, write_tables
@@ -71,18 +71,6 @@ class SolvedRun:
 
 
 @dataclass(frozen=True)
-class RunResults(Results):
-    """Results of a run, with what fields are written from."""
-
-    data: RunData | None = None
-    """The run with its figures and error bars."""
-    summary: Summary | None = None
-    """Content of summary.json, written again with the whole cost."""
-    deformation: Deformation | None = None
-    """Displacement and stress of the teeth in contact."""
-
-
-@dataclass(frozen=True)
 class Run(Computation[SolvedRun]):
     """The positions of one angular pitch at every friction coefficient. A pitch whose energy does not balance is solved
     again on deflected flanks."""
@@ -121,28 +109,25 @@ class Run(Computation[SolvedRun]):
         operation = None if vibrating is None else vibrating.operation
         return replace(solved, operation=operation, memory_MB=call.memory_MB())
 
-    def results(self, call: Call, solved: SolvedRun) -> RunResults:
-        """Tables and pictures of the positions, and of the mesh force where the pair vibrates."""
+    def results(self, call: Call, solved: SolvedRun) -> Results:
+        """Tables and pictures of the positions, and of the mesh force where the pair vibrates; then fields, and the
+        whole cost in summary.json."""
         scene, archive = solved.scene, solved.archive
-        data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
-        data = with_errors(data, archive, None if solved.coarse is None else companion_of(solved.coarse))
+        companion = None if solved.coarse is None else companion_of(solved.coarse)
+        data = with_errors(archived_run(archive), archive, companion)
         mended = [ON_DEFLECTED] if scene.exact != self.scene.exact else []
         cost = call.cost(replace(solved.timings, total=call.seconds), solved.memory_MB)
         content = summary(data, facts_of(data, solved.meshes, call.comm.size, cost), mended)
         tables = [*(_own_tables(content)), *(_of_operation(scene, solved.operation))]
         said = [*content.warnings, *_about_operation(solved.operation)]
         shown = replace(data, scene=scene.model_copy(update={"output": wanted_output(self.scene)}))
-        return RunResults(
-            scene, tables, said, self._drawn(shown), solved.timings, data=shown, summary=content,
-            deformation=solved.deformation,
-        )
 
-    def complete(self, call: Call, results: Results, cost: Callable[[], Cost]) -> None:
-        """Writes fields, and the cost into summary.json."""
-        assert isinstance(results, RunResults) and results.data is not None and results.summary is not None
-        for path in write_fields_of(results.data, results.deformation, call.folder):
-            call.log.info("fields: %s", path)
-        write_summary(call.folder, replace(results.summary, timings_s=cost().timings))
+        def complete(cost: Callable[[], Cost]) -> None:
+            for path in write_fields_of(shown, solved.deformation, call.folder):
+                call.log.info("fields: %s", path)
+            write_summary(call.folder, replace(content, timings_s=cost().timings))
+
+        return Results(scene, tables, said, self._drawn(shown), solved.timings, complete)
 
     def pictures(self, out: Path) -> Iterable[Picture]:
         """Pictures of the positions, and of the mesh force."""

@@ -99,7 +99,7 @@ class Transient(Computation[SolvedCases]):
         pressures = case_pressures(pair.model, _cases(solved))
         errors = case_errors(pair.model, pressures, solved.companion.value)
         begun = beginnings(pair.model, pressures, solved.companion.value)
-        natural = [own_frequency(pair, static) for static in own.static.positions]
+        natural = [own_frequency(pair, static) for static in own.static.solved.by_friction]
         naturals = [natural[i] for _, i in own.tasks]
         facts = transient_facts(pair.model, pressures, errors, [bars for _, bars in begun], pair.frequencies, naturals)
         tables = (
@@ -135,9 +135,9 @@ class Transient(Computation[SolvedCases]):
 
 def _cases(solved: SolvedCases) -> list[TransientCase]:
     """Cases with their motion, statics and mesh force."""
-    own, frictions = solved.own, solved.own.scene.contact.friction
+    own, frictions, static = solved.own, solved.own.scene.contact.friction, solved.own.static.solved.by_friction
     loads = [each.drive.torque / each.lever for each in own.loaded()]
     return [
-        TransientCase(speed, frictions[i], solved.found[number], own.static.positions[i], loads[i])
+        TransientCase(speed, frictions[i], solved.found[number], static[i], loads[i])
         for number, (speed, i) in enumerate(own.tasks)
     ]

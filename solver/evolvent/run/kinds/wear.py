@@ -12,9 +12,9 @@ from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.results.operation import OPERATION_TABLES
 from evolvent.results.drawing.picture_files import Picture
 from evolvent.run.call import Call
-from evolvent.run.computation import Outputs
+from evolvent.run.computation import Outputs, Results
 from evolvent.run.kept_pitch import STORED
-from evolvent.run.kinds.run import TABLES, Run, RunResults, SolvedRun
+from evolvent.run.kinds.run import TABLES, Run, SolvedRun
 from evolvent.run.wear_run import wear_scene
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import wanted_output
@@ -37,7 +37,7 @@ class Wear(Run):
         """The wear of a scene with a section [wear]."""
         return cls(scene)
 
-    def results(self, call: Call, solved: SolvedRun) -> RunResults:
+    def results(self, call: Call, solved: SolvedRun) -> Results:
         """Tables and pictures of the unworn pair, and of the finished study."""
         own, study = super().results(call, solved), read_worn(call.folder.out)
         drawn = self._worn_pictures(call.folder.out) if wanted_output(self.scene).pictures else ()

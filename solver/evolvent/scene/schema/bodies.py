@@ -9,32 +9,29 @@ from pydantic import BeforeValidator
 from evolvent.scene.schema.section import SceneSection, key
 
 
+def _modulus(default: float | None) -> Any:
+    """Declares the key of Young's modulus."""
+    allowed, remedy = "a number from 0.001 to 2000, in GPa", "steel is 210; mind GPa, not MPa"
+    return key("Young's modulus E", allowed, remedy, default=default, ge=1e-3, le=2000)
+
+
+def _ratio(default: float | None) -> Any:
+    """Declares the key of Poisson's ratio."""
+    return key("Poisson's ratio ν", "a number from 0 to 0.49", "steel is 0.3", default=default, ge=0, le=0.49)
+
+
 class GearMaterialSection(SceneSection):
     """[material.pinion] and [material.wheel]: deviations from [material]."""
 
-    E_GPa: float | None = key(
-        "Young's modulus E",
-        "a number from 0.001 to 2000, in GPa",
-        "steel is 210; mind GPa, not MPa",
-        default=None,
-        ge=1e-3,
-        le=2000,
-    )
-    nu: float | None = key("Poisson's ratio ν", "a number from 0 to 0.49", "steel is 0.3", default=None, ge=0, le=0.49)
+    E_GPa: float | None = _modulus(None)
+    nu: float | None = _ratio(None)
 
 
 class MaterialSection(SceneSection):
     """[material]: linear elasticity of both gears, unless a subsection deviates."""
 
-    E_GPa: float = key(
-        "Young's modulus E",
-        "a number from 0.001 to 2000, in GPa",
-        "steel is 210; mind GPa, not MPa",
-        default=210.0,
-        ge=1e-3,
-        le=2000,
-    )
-    nu: float = key("Poisson's ratio ν", "a number from 0 to 0.49", "steel is 0.3", default=0.3, ge=0, le=0.49)
+    E_GPa: float = _modulus(210.0)
+    nu: float = _ratio(0.3)
     pinion: GearMaterialSection = GearMaterialSection()
     wheel: GearMaterialSection = GearMaterialSection()
 

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown, validation_error
 from evolvent.scene.schema.loading import MOST_TORQUES
-from evolvent.scene.schema.section import SceneSection, as_tuple, key
+from evolvent.scene.schema.section import SceneSection, as_tuple, key, listed
 
 MOST_SPEEDS = 5000
 """Largest number of speeds of a sweep."""
@@ -42,22 +42,13 @@ def _inertia(gear: str) -> Any:
     )
 
 
-def _percents_remedy(given: tuple[float, ...]) -> str:
-    """Remedy for invalid torque_percents."""
-    if wrong := [each for each in given if not 0.0 < each <= 1000.0]:
-        return f"leave out {shown(wrong[0])}, which is not above 0 up to 1000"
-    if twice := [each for each in given if given.count(each) > 1]:
-        return f"give {shown(twice[0])} once"
-    return "add 100, the torque itself"
-
-
-def _map_remedy(given: tuple[float, ...]) -> str:
-    """Remedy for invalid map_percents."""
-    if wrong := [each for each in given if not MAP_RANGE[0] <= each <= MAP_RANGE[1]]:
-        return f"leave out {shown(wrong[0])}"
-    if twice := [each for each in given if given.count(each) > 1]:
-        return f"give {shown(twice[0])} once"
-    return "add another torque"
+def _list_remedy(given: tuple[float, ...], wrong: list[float], why: str, lacking: str) -> str:
+    """Remedy for an invalid list of torques. wrong: torques beyond its limits. why: what is said of them. lacking: the
+    remedy where there are none, and each is there once."""
+    if wrong:
+        return f"leave out {shown(wrong[0])}{why}"
+    twice = [each for each in given if given.count(each) > 1]
+    return f"give {shown(twice[0])} once" if twice else lacking
 
 
 class DynamicsSection(SceneSection):
@@ -181,10 +172,7 @@ class DynamicsSection(SceneSection):
         """Direction in which the speed changes until the pair runs at `operating_rpm`."""
         return "up" if self.approach == "run_up" else "down"
 
-    @field_validator("speed_rpm", "torque_percents", "histories_rpm", "map_percents", mode="before")
-    @classmethod
-    def _list_is_tuple(cls, value: Any) -> Any:
-        return tuple(value) if isinstance(value, list) else value
+    _tuples = field_validator("speed_rpm", "torque_percents", "histories_rpm", "map_percents", mode="before")(listed)
 
     @model_validator(mode="after")
     def _ranges(self) -> Self:
@@ -192,8 +180,10 @@ class DynamicsSection(SceneSection):
             remedy = "give the lower speed first, or delete the key"
             raise validation_error(InputProblem("speed_rpm", shown(speeds), SPEEDS, remedy))
         given = self.torque_percents
-        if not all(0.0 < each <= 1000.0 for each in given) or len(set(given)) < len(given) or 100.0 not in given:
-            raise validation_error(InputProblem("torque_percents", shown(given), PERCENTS, _percents_remedy(given)))
+        wrong = [each for each in given if not 0.0 < each <= 1000.0]
+        if wrong or len(set(given)) < len(given) or 100.0 not in given:
+            remedy = _list_remedy(given, wrong, ", which is not above 0 up to 1000", "add 100, the torque itself")
+            raise validation_error(InputProblem("torque_percents", shown(given), PERCENTS, remedy))
         histories = self.histories_rpm
         if not all(0.0 < each <= FASTEST for each in histories) or len(set(histories)) < len(histories):
             remedy = "give each once" if len(set(histories)) < len(histories) else "speeds of response.csv fit"
@@ -205,9 +195,9 @@ class DynamicsSection(SceneSection):
         given, heaviest = self.map_percents, max(self.torque_percents)
         if not given:
             return self
-        inside = all(MAP_RANGE[0] <= each <= MAP_RANGE[1] for each in given)
-        if not inside or len(set(given)) < len(given) or len(given) < MAP[0]:
-            remedy = f"{_map_remedy(given)}, or delete the key for no map"
+        wrong = [each for each in given if not MAP_RANGE[0] <= each <= MAP_RANGE[1]]
+        if wrong or len(set(given)) < len(given) or len(given) < MAP[0]:
+            remedy = f"{_list_remedy(given, wrong, '', 'add another torque')}, or delete the key for no map"
             raise validation_error(InputProblem("map_percents", shown(given), f"a list of {MAP_PERCENTS}", remedy))
         if max(given) > heaviest:
             allowed = f"none above {heaviest:g}, the heaviest of torque_percents: the force surface ends there"

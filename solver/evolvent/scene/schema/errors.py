@@ -112,9 +112,9 @@ def shown(value: Any) -> str:
     return _short(f"{value:.10g}" if isinstance(value, float) else str(value))
 
 
-def _short(text: str, limit: int = LONGEST_TEXT) -> str:
-    """The text, cut off at `limit` characters."""
-    return text if len(text) <= limit else text[: limit - 3] + "..."
+def _short(text: str) -> str:
+    """The text, cut off at `LONGEST_TEXT` characters."""
+    return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 3] + "..."
 
 
 def _problems(details: ErrorDetails, model: type[SceneSection]) -> list[InputProblem]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import field_validator, model_validator
 
 from evolvent.scene.schema.errors import InputProblem, shown, validation_error
-from evolvent.scene.schema.flank import LENGTH, LONGEST, FlankKeys
+from evolvent.scene.schema.flank import DERIVED, LONGEST, FlankKeys, length
 from evolvent.scene.schema.section import SceneSection, key
 
 LEAST_HELIX = 1e-3
@@ -39,13 +39,8 @@ class PairSection(SceneSection):
         ge=0,
         le=45,
     )
-    centre_distance_mm: float | None = key(
-        "centre distance a; by default that of zero backlash",
-        LENGTH,
-        "delete the key for the centre distance without backlash",
-        default=None,
-        gt=0,
-        le=LONGEST,
+    centre_distance_mm: float | None = length(
+        "centre distance a; by default that of zero backlash", "delete the key for the centre distance without backlash"
     )
     misalignment_um: float = key(
         "opening of the flanks over the face width by misalignment in the plane of action, positive: open at z > 0",
@@ -70,6 +65,22 @@ ALTERNATIVES = {
     "bore_diameter_mm": "rim_thickness_mm",
 }
 """Key of a diameter -> key that may be given instead; a rim with a web has a bore, too."""
+
+
+def _edge(meaning: str) -> Any:
+    """Declares the key of a tip edge's chamfer or rounding."""
+    return key(meaning, EDGE, default=0.0, ge=0, le=15000)
+
+
+def _of_rack(meaning: str) -> Any:
+    """Declares the key of a coefficient of the basic rack."""
+    return key(meaning, "a number from 0.1 to 3, times m_n", default=None, ge=0.1, le=3)
+
+
+def _offset(meaning: str, width: str) -> Any:
+    """Declares the key of an axial position. width: key of the part that lies there."""
+    allowed = "a number from -500 to 500, in mm"
+    return key(f"{meaning}, from mid-face towards z > 0", allowed, needs=(width,), default=0.0, ge=-500, le=500)
 
 
 class BodyKeys(SceneSection):
@@ -97,42 +108,22 @@ class BodyKeys(SceneSection):
         ge=-15000,
         le=0,
     )
-    tip_diameter_mm: float | None = key(
-        "tip diameter d_a; else from addendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
-    )
-    addendum_coefficient: float | None = key(
+    tip_diameter_mm: float | None = length("tip diameter d_a; else from addendum_coefficient")
+    addendum_coefficient: float | None = _of_rack(
         "addendum h_aP* of the basic rack, d_a = d + 2 m_n (h_aP* + x + k), k ≤ 0 the tip alteration coefficient; 1 if "
-        "there is no tip_diameter_mm",
-        "a number from 0.1 to 3, times m_n",
-        default=None,
-        ge=0.1,
-        le=3,
+        "there is no tip_diameter_mm"
     )
-    tip_chamfer_um: float = key(
+    tip_chamfer_um: float = _edge(
         "tip chamfer: its radial height h_K, d_Fa = d_a − 2 h_K is the tip form diameter; at 45° to the radius there, "
-        "in the transverse section",
-        EDGE,
-        default=0.0,
-        ge=0,
-        le=15000,
+        "in the transverse section"
     )
-    tip_rounding_um: float = key(
+    tip_rounding_um: float = _edge(
         "tip rounding: radius of the arc between involute and tip circle in the transverse section; the involute ends "
-        "at the tip form diameter d_Fa where it begins",
-        EDGE,
-        default=0.0,
-        ge=0,
-        le=15000,
+        "at the tip form diameter d_Fa where it begins"
     )
-    root_diameter_mm: float | None = key(
-        "root diameter d_f; else from dedendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
-    )
-    dedendum_coefficient: float | None = key(
-        "dedendum h_fP* of the basic rack, d_f = d − 2 m_n (h_fP* − x_E); 1.25 if there is no root_diameter_mm",
-        "a number from 0.1 to 3, times m_n",
-        default=None,
-        ge=0.1,
-        le=3,
+    root_diameter_mm: float | None = length("root diameter d_f; else from dedendum_coefficient")
+    dedendum_coefficient: float | None = _of_rack(
+        "dedendum h_fP* of the basic rack, d_f = d − 2 m_n (h_fP* − x_E); 1.25 if there is no root_diameter_mm"
     )
     rack_tip_radius_mm: float | None = key(
         "root fillet radius ρ_fP of the basic rack: tip radius of the generating rack in its normal section; 0.38 m_n, "
@@ -158,67 +149,30 @@ class BodyKeys(SceneSection):
         needs=("pair.helix_angle_deg",),
         default=None,
     )
-    bore_diameter_mm: float | None = key(
-        "diameter of the bore, where the gear sits rigidly on its shaft; half of the root diameter by default",
-        LENGTH,
-        "delete the key for the default",
-        default=None,
-        gt=0,
-        le=LONGEST,
+    bore_diameter_mm: float | None = length(
+        "diameter of the bore, where the gear sits rigidly on its shaft; half of the root diameter by default", DERIVED
     )
-    rim_thickness_mm: float | None = key(
+    rim_thickness_mm: float | None = length(
         "thickness s_R of a rim below the root circle, on a web; without web_thickness_mm it is in place of the bore, "
         "held rigidly at its inside, web and hub are left out",
-        LENGTH,
         "delete the key for a gear with a bore",
-        default=None,
-        gt=0,
-        le=LONGEST,
     )
-    web_thickness_mm: float | None = key(
+    web_thickness_mm: float | None = length(
         "axial thickness b_s of the web, a disc from the rim, rim_thickness_mm, to the hub or the bore; by default the "
         "body is as wide as the face",
-        LENGTH,
-        "delete the key for a full ring",
-        needs=("rim_thickness_mm",),
-        default=None,
-        gt=0,
-        le=LONGEST,
+        "delete the key for a full ring", ("rim_thickness_mm",),
     )
-    web_offset_mm: float = key(
-        "axial position of the web's middle, from mid-face towards z > 0",
-        "a number from -500 to 500, in mm",
-        needs=("web_thickness_mm",),
-        default=0.0,
-        ge=-500,
-        le=500,
-    )
-    hub_diameter_mm: float | None = key(
+    web_offset_mm: float = _offset("axial position of the web's middle", "web_thickness_mm")
+    hub_diameter_mm: float | None = length(
         "outer diameter of the hub, which is as wide as the face; by default the web reaches the bore, which is held "
         "over its thickness",
-        LENGTH,
-        "delete the key for a web that reaches the bore",
-        needs=("web_thickness_mm",),
-        default=None,
-        gt=0,
-        le=LONGEST,
+        "delete the key for a web that reaches the bore", ("web_thickness_mm",),
     )
-    support_width_mm: float | None = key(
+    support_width_mm: float | None = length(
         "axial length over which the bore is held, for a shaft through a part of the face; by default the whole face",
-        LENGTH,
-        "delete the key for the default",
-        default=None,
-        gt=0,
-        le=LONGEST,
+        DERIVED,
     )
-    support_offset_mm: float = key(
-        "axial position of the middle of that length, from mid-face towards z > 0",
-        "a number from -500 to 500, in mm",
-        needs=("support_width_mm",),
-        default=0.0,
-        ge=-500,
-        le=500,
-    )
+    support_offset_mm: float = _offset("axial position of the middle of that length", "support_width_mm")
 
     @field_validator("tooth_thickness_allowance_um")
     @classmethod

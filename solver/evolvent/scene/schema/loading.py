@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import InputProblem, shown, validation_error
-from evolvent.scene.schema.section import SceneSection, as_tuple, key
+from evolvent.scene.schema.section import SceneSection, as_tuple, key, listed
 
 Coefficient = Annotated[float, Field(ge=0, le=1)]
 MOST_TORQUES = 30
@@ -84,10 +84,7 @@ class LoadSection(SceneSection):
             raise validation_error(InputProblem("", found, PERCENTS, "delete the repeated ones"))
         return values
 
-    @field_validator("mesh_torques_Nm", "percents", mode="before")
-    @classmethod
-    def _list_is_tuple(cls, value: Any) -> Any:
-        return tuple(value) if isinstance(value, list) else value
+    _tuples = field_validator("mesh_torques_Nm", "percents", mode="before")(listed)
 
     @model_validator(mode="after")
     def _meshes_serve_the_torque(self) -> Self:

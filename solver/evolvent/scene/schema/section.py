@@ -47,6 +47,11 @@ class SceneSection(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
+def listed(value: Any) -> Any:
+    """A list as a tuple, other values as they are."""
+    return tuple(value) if isinstance(value, list) else value
+
+
 def as_tuple(value: Any) -> Any:
     """A list as a tuple, a single value as a tuple of one."""
     return tuple(value) if isinstance(value, (list, tuple)) else (value,)

@@ -11,9 +11,11 @@ import pytest
 
 from evolvent.commands.app import Exit, main
 from evolvent.gears import shared_gears as gear_loads
+from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.tables.load_table import LoadRow
 from evolvent.run.kinds.loads import Loads
+from evolvent.run.kinds.losses import Losses
 from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import SceneError, load_scene
 from tests.support.computing.quiet import quietly
@@ -102,3 +104,20 @@ def test_torque_beyond_those_of_the_meshes_is_refused() -> None:
     """A scene whose meshes serve 1 to 2 N·m only."""
     with pytest.raises(SceneError, match="mesh_torques_Nm"):
         spur_scene(*SHORT, "load.mesh_torques_Nm=[1.0,2.0]")
+
+
+@pytest.mark.parametrize("kind", [Loads, Losses])
+def test_results_of_a_list_stay_until_its_gears_are_condensed(
+    kind: type[Loads] | type[Losses], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Gears that cannot be condensed: `--overwrite` removes no earlier table, as of all other commands."""
+
+    def without_memory(*_: object) -> None:
+        raise MemoryError("no memory")
+
+    monkeypatch.setattr(gear_loads, "condensed_gears", without_memory)
+    (table,) = kind.outputs.tables
+    RunFolder(tmp_path).write_text(table, "of an earlier call\n")
+    with pytest.raises(MemoryError, match="no memory"):
+        quietly(kind.of(spur_scene(*SHORT), [50.0, 100.0]), tmp_path, overwrite=True)
+    assert (tmp_path / table).read_text() == "of an earlier call\n" and not (tmp_path / "scene.toml").exists()

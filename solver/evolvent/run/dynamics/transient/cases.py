@@ -25,12 +25,10 @@ from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.archive.run_cost import Timings
 from evolvent.run.call import Call
 from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.run.dynamics.transient.kept_cases import KeptCases
-from evolvent.run.kept_pitch import Meshes, kept_pitch
+from evolvent.run.kept_pitch import KeptPitch, Meshes, kept_pitch
 from evolvent.run.progress import ERROR_BARS, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -46,18 +44,6 @@ Motion = MeshPeriods | None
 """Computed mesh periods of a case; None where it failed."""
 Found = Mapping[int, MeshPeriods | str]
 """Number of a case -> its computed mesh periods, or the reason why it failed."""
-
-
-@dataclass(frozen=True)
-class Statics:
-    """Static positions of a transient: a certified pitch without inertia."""
-
-    scene: Scene
-    """Scene of the positions, on deflected flanks where their pitch needs them."""
-    positions: tuple[tuple[PositionResult, ...], ...]
-    """Results of the pitch at each friction coefficient."""
-    timings: Timings
-    """Wall time of the solution [s]."""
 
 
 def one_pitch(scene: Scene) -> GearProblem:
@@ -96,8 +82,8 @@ class PairCases:
     """Gear problem of the scene."""
     pair: MovingPair
     """Gear pair with mass, damping and stiffness on one kind of meshes."""
-    static: Statics
-    """Positions of the pitch without inertia."""
+    static: KeptPitch
+    """The pitch without inertia."""
     settings: DriveSettings
     """Inertias, damping and backlash."""
     comm: MPI.Comm
@@ -114,15 +100,14 @@ class PairCases:
         pitch, problem = kept_pitch(call, scene, on.meshes), on.meshes.problem(scene)
         gears = pitch.gears or call.gears(problem, on.meshes.mesh, shown=not on.meshes.part)
         model = replace(gears.model, deflected=pitch.solved.deflected)
-        static = Statics(pitch.scene, tuple(pitch.solved.by_friction), pitch.timings)
         progress.stage(MODES, sum(len(harmonics(gear.z)) for gear in problem.pair.gears))
         sampled = MeshSpeed(max(section.speeds_rpm), problem.pair.pinion.z).mesh_frequency * scene.sweep.positions  # Hz
         count, density = section.modes_per_harmonic, dynamics.density_kg_m3
         found = partial(resolved_modes, problem, model, density, sampled, count, on.least)
         modes = together(call.comm, lambda: found(lambda: progress.advance(more=True)))
-        constant_speed = section.drive == "constant_speed"
-        pair = driven_pair(model, modes, settings, static.positions[0], section.mode_damping_ratio, constant_speed)
-        return PairCases(scene, problem, pair, static, settings, call.comm, progress)
+        first, constant_speed = pitch.solved.by_friction[0], section.drive == "constant_speed"
+        pair = driven_pair(model, modes, settings, first, section.mode_damping_ratio, constant_speed)
+        return PairCases(scene, problem, pair, pitch, settings, call.comm, progress)
 
     @property
     def tasks(self) -> list[tuple[MeshSpeed, int]]:
@@ -133,7 +118,7 @@ class PairCases:
 
     def loaded(self) -> list[MovingPair]:
         """The pair under its loads at each friction coefficient."""
-        return [loaded_as_static(self.pair, results) for results in self.static.positions]
+        return [loaded_as_static(self.pair, results) for results in self.static.solved.by_friction]
 
     def found(self, kept: KeptCases) -> dict[int, MeshPeriods]:
         """Computes all cases. Missing ones are divided among the ranks; rank 0 returns all, other ranks none. Raises
@@ -215,7 +200,7 @@ class PairCases:
         speed, index = self.tasks[number]
         scheme = TimeScheme(transient_section(self.scene).spectral_radius)
         friction = self.scene.contact.friction[index]
-        pair = loaded_as_static(self.pair, self.static.positions[index])
+        pair = loaded_as_static(self.pair, self.static.solved.by_friction[index])
         return PairTransient(pair, friction, speed, scheme, contacts, self._division(contacts))
 
     def _division(self, contacts: KeptContacts) -> DividedSteps:

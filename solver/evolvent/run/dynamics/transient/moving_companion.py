@@ -35,4 +35,4 @@ def moving_companion(
     contacts = cases.contacts(FINER)
     finer = cases.tried(kept(FINER_STEPS), contacts)
     same = cases.tried(kept(COARSE), contacts.thinned(FINER))
-    return MovingCompanion(cases.pair.model, scene.mesh.order, cases.static.positions, same, finer)
+    return MovingCompanion(cases.pair.model, scene.mesh.order, tuple(cases.static.solved.by_friction), same, finer)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 
 from evolvent.results.drawing.labels import ending
 from evolvent.results.drawing.picture_files import Picture
-from evolvent.run.study.figures.study_values import StudyValues
+from evolvent.run.study.figures.study_values import StudyValues, bare_name
 
 
 def study_pictures(values: StudyValues) -> list[Picture]:
@@ -15,40 +14,19 @@ def study_pictures(values: StudyValues) -> list[Picture]:
     drawn = [name for name in values.figures if values.has(name)]
     if not drawn:
         return []
-    if len(values.axes) == 1:
-        units = dict.fromkeys(ending(_bare(name)) for name in drawn)
-        return [_curves(values, unit, [name for name in drawn if ending(_bare(name)) == unit]) for unit in units]
-    if len(values.axes) == 2 and not values.is_sampled:
-        return [_map(values, name) for name in drawn]
-    return [Picture("parallel_coordinates.png", partial(_parallel, values, drawn))]
-
-
-def _bare(name: str) -> str:
-    """Name of a figure without the friction coefficient in brackets."""
-    return name.partition(" (")[0]
-
-
-def _curves(values: StudyValues, unit: str, names: Sequence[str]) -> Picture:
-    def drawn() -> bytes:
-        from evolvent.run.study.figures.curves import curves_picture  # matplotlib takes a second to import
-
-        return curves_picture(values, names)
-
-    return Picture(f"curves{unit}.png", drawn)
-
-
-def _map(values: StudyValues, name: str) -> Picture:
-    def drawn() -> bytes:
-        from evolvent.run.study.figures.heat_map import map_picture
-
-        return map_picture(values, name)
-
-    return Picture(f"map_{name.replace(' (μ = ', '_friction_').removesuffix(')')}.png", drawn)
-
-
-def _parallel(values: StudyValues, names: Sequence[str]) -> bytes:
+    from evolvent.run.study.figures.curves import curves_picture  # matplotlib takes a second to import
+    from evolvent.run.study.figures.heat_map import map_picture
     from evolvent.run.study.figures.parallel_coordinates import parallel_picture
 
-    return parallel_picture(values, names)
+    if len(values.axes) == 1:
+        units = dict.fromkeys(ending(bare_name(name)) for name in drawn)
+        alike = {unit: [name for name in drawn if ending(bare_name(name)) == unit] for unit in units}
+        return [Picture(f"curves{unit}.png", partial(curves_picture, values, names)) for unit, names in alike.items()]
+    if len(values.axes) == 2 and not values.is_sampled:
+        return [Picture(f"map_{_file_name(name)}.png", partial(map_picture, values, name)) for name in drawn]
+    return [Picture("parallel_coordinates.png", partial(parallel_picture, values, drawn))]
 
 
+def _file_name(name: str) -> str:
+    """Name of a figure as part of a file's name."""
+    return name.replace(" (μ = ", "_friction_").removesuffix(")")

@@ -8,9 +8,9 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.labels import UNITS, ending, label
+from evolvent.results.drawing.labels import UNITS, ending
 from evolvent.results.drawing.style import foot, png, sheet, styled
-from evolvent.run.study.figures.study_values import StudyValues
+from evolvent.run.study.figures.study_values import StudyValues, bare_name, figure_label
 
 COLOURS = matplotlib.colormaps["tab10"]
 MARKERS = "o", "s", "^", "D", "v", "P", "X", "*"
@@ -25,7 +25,7 @@ def curves_picture(values: StudyValues, names: Sequence[str]) -> bytes:
 def curves_figure(values: StudyValues, names: Sequence[str]) -> Figure:
     """Figure with a line for each figure of the study, with error bars where they are known. names: figures of one
     unit."""
-    axis, unit = values.axes[0], UNITS.get(ending(names[0].partition(" (")[0]), "")
+    axis, unit = values.axes[0], UNITS.get(ending(bare_name(names[0])), "")
     figure = sheet(values.title, _subtitle(values, names), (9.6, 5.4))
     axes, order = figure.subplots(), np.argsort(values.points(0), kind="stable")
     places = axis.places[values.points(0)][order]
@@ -33,22 +33,17 @@ def curves_figure(values: StudyValues, names: Sequence[str]) -> Figure:
         own, bars = values.of(name)[order], values.errors(name)[order]
         style = {"color": COLOURS(number % 10), "marker": MARKERS[number % len(MARKERS)], "markersize": 5.0}
         known = bars if np.isfinite(bars).any() else None
-        axes.errorbar(places, own, known, capsize=3.0, label=_label(name, unit=not unit or len(names) == 1), **style)
+        words = figure_label(name, unit=not unit or len(names) == 1)
+        axes.errorbar(places, own, known, capsize=3.0, label=words, **style)
     if not axis.is_numeric:
         axes.set_xticks(axis.places, axis.texts)
     axes.set_xlabel(axis.label)
-    axes.set_ylabel(f"[{unit}]" if len(names) > 1 and unit else _label(names[0]))
+    axes.set_ylabel(f"[{unit}]" if len(names) > 1 and unit else figure_label(names[0]))
     if len(names) > 1:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     has_bars = any(np.isfinite(values.errors(name)).any() for name in names)
     foot(figure, *(["Bars: estimated error."] if has_bars else []), *values.foot)
     return figure
-
-
-def _label(name: str, unit: bool = True) -> str:
-    """Name of a figure in words, with the friction coefficient in brackets."""
-    figure, space, friction = name.partition(" (")
-    return label(figure, unit) + space + friction
 
 
 def _subtitle(values: StudyValues, names: Sequence[str]) -> str:
@@ -57,5 +52,5 @@ def _subtitle(values: StudyValues, names: Sequence[str]) -> str:
     known = np.flatnonzero(np.isfinite(own))
     low, high = known[np.argmin(own[known])], known[np.argmax(own[known])]
     texts = [axis.texts[point] for point in values.points(0)]
-    said = f"{_label(names[0])} from {own[low]:.4g} at {texts[low]} to {own[high]:.4g} at {texts[high]}"
+    said = f"{figure_label(names[0])} from {own[low]:.4g} at {texts[low]} to {own[high]:.4g} at {texts[high]}"
     return f"{said}. {values.done} scenes."

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from evolvent.results.drawing.labels import heading, label
 from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, sheet, styled
-from evolvent.run.study.figures.study_values import StudyValues
+from evolvent.run.study.figures.study_values import StudyValues, bare_name, figure_label
 from evolvent_meshes.arrays import Floats
 
 MOST_NUMBERS = 150
@@ -35,8 +35,7 @@ def map_figure(values: StudyValues, name: str) -> Figure:
     """Figure with an equally large cell for each scene that shows its value; cells of scenes without one are hatched.
     """
     grid, (first, second) = grid_of(values, name), values.axes
-    words, space, friction = name.partition(" (")
-    figure = sheet(heading(label(words) + space + friction), f"{values.title}. {_range(values, grid)}", (9.6, 6.6))
+    figure = sheet(heading(figure_label(name)), f"{values.title}. {_range(values, grid)}", (9.6, 6.6))
     axes = figure.subplots()
     axes.grid(visible=False)
     axes.set_facecolor("#f4f4f4")
@@ -51,7 +50,7 @@ def map_figure(values: StudyValues, name: str) -> Figure:
         ticks(np.arange(len(texts))[::step] + 0.5, texts[::step])
     axes.set_xlabel(first.label)
     axes.set_ylabel(second.label)
-    figure.colorbar(drawn, ax=axes, pad=0.015, label=label(words))
+    figure.colorbar(drawn, ax=axes, pad=0.015, label=label(bare_name(name)))
     foot(figure, *values.foot)
     return figure
 

@@ -11,9 +11,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.labels import label
 from evolvent.results.drawing.style import FAINT, FRICTION_MAP, INK, foot, png, sheet, styled
-from evolvent.run.study.figures.study_values import StudyValues
+from evolvent.run.study.figures.study_values import StudyValues, figure_label
 from evolvent_meshes.arrays import Floats
 
 MOST_FIGURES = 5
@@ -32,11 +31,11 @@ def parallel_picture(values: StudyValues, names: Sequence[str]) -> bytes:
 def parallel_figure(values: StudyValues, names: Sequence[str]) -> Figure:
     """Figure of parallel axes, each from its lowest value to its highest; lines are coloured by the first figure."""
     shown = list(names[:MOST_FIGURES])
-    heads = [*(axis.label for axis in values.axes), *(_label(name) for name in shown)]
+    heads = [*(axis.label for axis in values.axes), *(figure_label(name) for name in shown)]
     columns = [axis.places[values.points(k)] for k, axis in enumerate(values.axes)]
     columns += [values.of(name) for name in shown]
     complete = np.isfinite(np.array(columns)).all(axis=0)
-    figure = sheet(values.title, f"{int(complete.sum())} scenes, coloured by {_label(shown[0])}.",
+    figure = sheet(values.title, f"{int(complete.sum())} scenes, coloured by {figure_label(shown[0])}.",
                    (max(9.6, 1.7 * len(heads)), 5.8))
     axes = figure.subplots()
     axes.grid(visible=False)
@@ -58,9 +57,9 @@ def parallel_figure(values: StudyValues, names: Sequence[str]) -> Figure:
     axes.set_yticks([])
     for side in axes.spines.values():
         side.set_visible(False)
-    figure.colorbar(lines, ax=axes, pad=0.015, label=_label(shown[0]))
-    left = [f"Not drawn: {', '.join(_label(name) for name in names[MOST_FIGURES:])}."] if names[MOST_FIGURES:] else []
-    foot(figure, *left, *values.foot)
+    figure.colorbar(lines, ax=axes, pad=0.015, label=figure_label(shown[0]))
+    left = ", ".join(figure_label(name) for name in names[MOST_FIGURES:])
+    foot(figure, *([f"Not drawn: {left}."] if left else []), *values.foot)
     return figure
 
 
@@ -82,8 +81,3 @@ def _axis(axes: Axes, place: int, known: Floats, texts: Sequence[str] | None) ->
     for at, text in ticks:
         axes.text(place + 0.03, at, text, fontsize=7.5, color=INK, va="center",
                   bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5})
-
-
-def _label(name: str) -> str:
-    figure, space, friction = name.partition(" (")
-    return label(figure) + space + friction

@@ -110,6 +110,17 @@ class StudyValues:
         return [f"{missing} of {len(self.rows)} scenes are not done: study.csv says why."] if missing else []
 
 
+def bare_name(name: str) -> str:
+    """Name of a figure without the friction coefficient in brackets."""
+    return name.partition(" (")[0]
+
+
+def figure_label(name: str, unit: bool = True) -> str:
+    """Name of a figure in words, with the friction coefficient in brackets. unit: with its unit."""
+    figure, space, friction = name.partition(" (")
+    return label(figure, unit) + space + friction
+
+
 def _error_name(name: str) -> str:
     """Column of the error bar of a figure."""
     figure, space, friction = name.partition(" (")

@@ -24,8 +24,6 @@ class Axis:
     """Dotted keys of the scene."""
     rows: tuple[SampleRow, ...]
     """Values of the keys, one row a point of the axis."""
-    is_sampled: bool = False
-    """Whether the points are samples of a Latin hypercube, which have no order."""
 
 
 def axes(study: StudyFile) -> list[Axis]:
@@ -52,4 +50,4 @@ def _sampled(section: LatinHypercubeSection) -> Axis:
     samples = qmc.scale(sampler.random(section.samples), lowest, highest)
     whole = [keys_of(Scene)[name].annotation is int for name in section.ranges]
     rows = (tuple(round(v) if w else float(v) for v, w in zip(row, whole)) for row in samples)
-    return Axis(tuple(section.ranges), tuple(rows), is_sampled=True)
+    return Axis(tuple(section.ranges), tuple(rows))

@@ -5,7 +5,7 @@ Everything that is wrong with it is reported in one `SceneError` before anything
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -13,10 +13,10 @@ from pydantic import BeforeValidator, Field, ValidationError, field_validator, m
 
 from evolvent.run.kinds.all import KINDS
 from evolvent.scene.scene import Scene, SceneError, future_warning
-from evolvent.scene.scene_text import STUDY_FILE, require_kind, require_shallow, scene_text, toml_values
+from evolvent.scene.scene_text import STUDY_FILE, flat_keys, require_kind, require_shallow, scene_text, toml_values
 from evolvent.scene.schema.errors import InputProblem, key_problem, problems_of, shown, validation_error
 from evolvent.scene.schema.old_names import Warn, new_names
-from evolvent.scene.schema.section import SceneSection, key
+from evolvent.scene.schema.section import SceneSection, key, listed
 
 COMPUTATIONS = ("check", *(kind.name for kind in KINDS if kind.in_studies))
 """Computations that a study can make of each scene."""
@@ -30,31 +30,19 @@ NAMED = 5
 
 
 def flat(values: Any) -> Any:
-    """Nested tables as one with dotted keys, {"load": {"torque_Nm": 1}} -> {"load.torque_Nm": 1}; other values as they
-    are."""
-    return dict(_flat(values, "")) if isinstance(values, dict) else values
-
-
-def _flat(values: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
-    for name, value in values.items():
-        if isinstance(value, dict) and value:
-            yield from _flat(value, f"{prefix}{name}.")
-        else:
-            yield f"{prefix}{name}", value
+    """Nested tables as one with dotted keys, see `flat_keys`; other values as they are."""
+    return flat_keys(values) if isinstance(values, dict) else values
 
 
 def _tuples(values: Any) -> Any:
-    """Values by dotted keys, with tuples in place of lists."""
-    flattened = flat(values)
-    if not isinstance(flattened, dict):
-        return flattened
-    return {name: tuple(value) if isinstance(value, list) else value for name, value in flattened.items()}
+    """Values by dotted keys, with tuples in place of lists; other values as they are."""
+    return {name: listed(value) for name, value in flat_keys(values).items()} if isinstance(values, dict) else values
 
 
 SceneKeys = Annotated[dict[str, Any], BeforeValidator(flat)]
 ValueLists = Annotated[dict[str, tuple[Any, ...]], BeforeValidator(_tuples)]
 Ranges = Annotated[dict[str, tuple[float, float]], BeforeValidator(_tuples)]
-Texts = Annotated[tuple[str, ...], BeforeValidator(lambda given: tuple(given) if isinstance(given, list) else given)]
+Texts = Annotated[tuple[str, ...], BeforeValidator(listed)]
 
 
 class LatinHypercubeSection(SceneSection):
@@ -140,9 +128,9 @@ class StudyFile(SceneSection):
         "keys of the scene, each with a list, all equally long", EXAMPLE, default={},
     )
     latin_hypercube: LatinHypercubeSection | None = None
-    figure: Annotated[
-        tuple[FigureSection, ...], BeforeValidator(lambda given: tuple(given) if isinstance(given, list) else given)
-    ] = Field(default=(), description="figures from tables of the scenes' folders")
+    figure: Annotated[tuple[FigureSection, ...], BeforeValidator(listed)] = Field(
+        default=(), description="figures from tables of the scenes' folders"
+    )
 
     @model_validator(mode="after")
     def _keys_are_scene_keys(self) -> Self:

@@ -8,11 +8,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar, Generic, Self, TypeVar
 
+from evolvent.check.scene_warnings import flank_warnings
 from evolvent.results.archive.run_cost import Cost, Timings
 from evolvent.results.drawing.picture_files import Picture
 from evolvent.results.drawing.table_pictures import TablePicture, from_tables
 from evolvent.results.tables.table import Filled
 from evolvent.run.call import Call
+from evolvent.scene.chart_warnings import chart_warnings
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 
 Solved = TypeVar("Solved")
@@ -86,9 +89,15 @@ class Computation(ABC, Generic[Solved]):
     def check(self) -> None:
         """Refuses scenes that cannot be computed, before anything is written. On rank 0 alone. Raises InputError."""
 
+    @property
+    def heaviest(self) -> Scene:
+        """The scene under the largest of its torques."""
+        return max(self.sized, key=lambda scene: scene.load.torque_Nm)
+
     def warnings(self) -> Iterable[str]:
-        """Warnings that are known before anything is computed, a sentence each. On rank 0 alone."""
-        return ()
+        """Warnings that are known before anything is computed, a sentence each: by default those on charts, flanks and
+        tips, under the largest torque. On rank 0 alone."""
+        yield from (*chart_warnings(self.heaviest), *flank_warnings(gear_problem(self.heaviest)))
 
     @abstractmethod
     def solve(self, call: Call) -> Solved:

@@ -121,11 +121,12 @@ def resume_point(call: Call, scene: Scene, meshes: Meshes) -> ResumePoint:
     return ResumePoint() if state is None else ResumePoint(tuple(archive.read_sweep(pair)), state)
 
 
-def require_resumable(scene: Scene, folder: Path, command: str, part: str = "") -> None:
-    """Raises ArchiveError where stored positions belong neither to a scene nor to it on deflected flanks."""
+def require_resumable(scene: Scene, folder: Path, command: str, part: str = "", listed: Scene | None = None) -> None:
+    """Raises ArchiveError where stored positions belong neither to a scene nor to it on deflected flanks. listed: scene
+    with all torques, of which this is one; the message names its keys."""
     archives = [Archive(folder, each, command, part) for each in (with_deflected_flanks(scene), scene)]
     if not any(archive.holds_scene() for archive in archives):
-        archives[-1].read_state(scene.gear_pair())
+        Archive(folder, listed or scene, command, part).read_state(scene.gear_pair())
 
 
 def scene_to_solve(call: Call, scene: Scene, meshes: Meshes) -> Scene:

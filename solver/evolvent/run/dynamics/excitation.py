@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -18,6 +19,7 @@ from evolvent.gears.solution.certified_pitch import ON_DEFLECTED, balanced
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.tables.table import Filled
 from evolvent.run.call import Call
+from evolvent.run.dynamics.excitation_lines import large_bars
 from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.kept_pitch import COMPANION, OWN, Meshes
@@ -39,10 +41,10 @@ class SolvedExcitation:
     warnings: tuple[str, ...]
     """Warnings on the excitation, a sentence each."""
 
-    def tables(self, loads: SceneTorques) -> list[Filled]:
-        """Tables of the excitation."""
+    def tables(self, loads: SceneTorques, warnings: Iterable[str]) -> list[Filled]:
+        """Tables of the excitation. warnings: that were known before it was computed."""
         scene, solved = loads.scene, (self.excitation, self.companion)
-        facts = excitation_facts(scene.title, scene.mesh.level, *solved, self.warnings)
+        facts = excitation_facts(scene.title, scene.mesh.level, *solved, (*warnings, *self.warnings))
         return [
             EXCITATION.of(excitation_rows(*solved)), HARMONICS.of(harmonic_rows(*solved)), EXCITATION_FACTS.of(facts)
         ]
@@ -61,10 +63,10 @@ def solved_excitation(call: Call, loads: SceneTorques) -> SolvedExcitation:
     coarse = None if again.value is None else MeshExcitation(unloaded, again.value)
     companion = CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements, again.reason)
     mended = loaded.deflected and not problem.options.deflected_flanks
-    said = loads.warnings, [ON_DEFLECTED] * mended, filter(None, [again.reason])
-    return SolvedExcitation(
-        MeshExcitation(unloaded, loaded), companion, again.seconds, tuple(each for part in said for each in part)
-    )
+    own = MeshExcitation(unloaded, loaded)
+    doubtful = large_bars(harmonic_rows(own, companion)) if coarse is not None else ()
+    said = loads.warnings, [ON_DEFLECTED] * mended, filter(None, [again.reason]), doubtful
+    return SolvedExcitation(own, companion, again.seconds, tuple(each for part in said for each in part))
 
 
 def loaded_pitch(call: Call, loads: SceneTorques, angles: Floats, meshes: Meshes) -> LoadedMesh:

@@ -15,7 +15,6 @@ from functools import cached_property
 from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import under_torque
 from evolvent.scene.scene import Scene
@@ -42,6 +41,11 @@ class SceneTorques:
         return replace(own, mesh_torques=(lightest, max(heaviest, self.torques[-1])))
 
     @property
+    def heaviest(self) -> Scene:
+        """The scene under the largest torque."""
+        return under_torque(self.scene, 1e-3 * self.torques[-1])
+
+    @property
     def elements(self) -> tuple[float, ...]:
         """(m,) elements across the Hertz width, which grows with the square root of the torque."""
         own = elements_per_contact_width(self.problem, is_two_level(self.problem))
@@ -49,13 +53,11 @@ class SceneTorques:
 
     @property
     def warnings(self) -> list[str]:
-        """Sentences on the scene's charts, and where contacts are too narrow for their error bars."""
-        said = chart_warnings(self.scene)
+        """Sentence on contacts that are too narrow for their error bars, if any is."""
         narrow = [torque for torque, elements in zip(self.torques, self.elements) if elements < NARROWEST]
         if not narrow:
-            return said
+            return []
         return [
-            *said,
             f"torques up to {1e-3 * narrow[-1]:.3g} N·m: wanted a contact at least {NARROWEST:g} elements wide, found "
             f"{self.elements[0]:.2g} under the lightest; transmission error and stiffness may be off by several per "
             "cent, and error bars too small. Leave these torques out, or take finer meshes: "

@@ -24,6 +24,7 @@ from evolvent.run.dynamics.kept_positions import KEPT
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
 from evolvent.run.dynamics.summary_lines import summary_lines
 from evolvent.run.dynamics.vibration import SweptVibration, swept_vibration
+from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.vibration_limits import doubtful
 
@@ -51,14 +52,19 @@ class Dynamics(Computation[SolvedDynamics]):
         tuple(table.name for table in TABLES), (EXCITATION_PICTURE, *VIBRATION_PICTURES), stored=KEPT
     )
 
+    @property
+    def heaviest(self) -> Scene:
+        """The scene under the largest torque of its excitation."""
+        return self._loads.heaviest
+
     def check(self) -> None:
         """Raises SceneError where the vibration cannot be computed, or one of the torques is refused."""
         check_vibration(self.scene)
         _ = self._loads
 
     def warnings(self) -> Iterator[str]:
-        """Warning on a vibration that is taken out of its range."""
-        yield from doubtful(self._loads.scene.planned_vibration())
+        """Warnings on charts, flanks and tips, and on a vibration that is taken out of its range."""
+        yield from (*super().warnings(), *doubtful(self._loads.scene.planned_vibration()))
 
     def solve(self, call: Call) -> SolvedDynamics:
         """Excitation, stored position by position, and the vibration on it. Raises NoSteadyState, too."""
@@ -78,11 +84,11 @@ class Dynamics(Computation[SolvedDynamics]):
         vibration = solved.vibration
         assert vibration is not None
         excited = list(solved.excitation.warnings)
-        said = [*excited, *doubtful(self._loads.scene.planned_vibration()), *vibration.warnings]
+        said = [*self.warnings(), *excited, *vibration.warnings]
         pair, swept, errors = vibration.own.drive, vibration.swept, vibration.errors
         facts = summary(pair, vibration.settings, swept, *vibration.share, vibration.iso, errors, tuple(said))
         tables = [
-            *solved.excitation.tables(self._loads),
+            *solved.excitation.tables(self._loads, super().warnings()),
             RESPONSE.of(response_rows(pair, swept, vibration.own.found, vibration.iso, errors)),
             BRANCH.of(branch_rows(pair, swept)), DYNAMICS.of(facts),
             SPECTRUM.of(spectrum_rows(pair, swept, vibration.own.found)),

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ClassVar, Self
 
 from evolvent.dynamics.figures.all import EXCITATION_PICTURE
@@ -12,6 +13,7 @@ from evolvent.results.archive.run_cost import Timings
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.dynamics.excitation import EXCITATION_TABLES, SolvedExcitation, solved_excitation
+from evolvent.run.dynamics.excitation_lines import excitation_lines
 from evolvent.run.dynamics.kept_positions import KEPT
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
 from evolvent.scene.part_torque import listed_percents, with_percents
@@ -41,6 +43,11 @@ class Excitation(Computation[SolvedExcitation]):
         """Excitation of a scene under its torques."""
         return cls(loads.scene, loads)
 
+    @property
+    def heaviest(self) -> Scene:
+        """The scene under the largest torque."""
+        return self.loads.heaviest
+
     def check(self) -> None:
         """Raises SceneError for a number of positions without harmonics."""
         check_positions(self.scene)
@@ -52,4 +59,8 @@ class Excitation(Computation[SolvedExcitation]):
     def results(self, call: Call, solved: SolvedExcitation) -> Results:
         """Tables of the excitation."""
         timings = Timings(error_bars=solved.seconds)
-        return Results(self.scene, solved.tables(self.loads), solved.warnings, timings=timings)
+        return Results(self.scene, solved.tables(self.loads, self.warnings()), solved.warnings, timings=timings)
+
+    def lines(self, out: Path) -> Iterable[str]:
+        """Key figures of harmonics.csv."""
+        return excitation_lines(out)

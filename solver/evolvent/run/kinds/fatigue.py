@@ -12,13 +12,12 @@ from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.mesh_facts import cells_across
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.results.tables.run_warnings import about_spacing
+from evolvent.results.tables.run_warnings import RELIEVE, about_spacing, tip_edge_contact
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.kept_pitch import STORED
 from evolvent.run.solved_pitches import SolvedPitches, companion_of, solved_pitches
 from evolvent.run.strength.fatigue_lines import fatigue_lines
-from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.skips import wanted_output
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, fatigue_of_both
@@ -72,7 +71,8 @@ class Fatigue(Computation[SolvedPitches]):
 
 def _about(run: RunData) -> Iterator[str]:
     """Warnings on the pressures from which fatigue is computed."""
-    yield from chart_warnings(run.scene)
+    if edges := tip_edge_contact(run):
+        yield f"{edges}: what lies within the tip-edge zones has no figures; {RELIEVE}."
     yield from coarse_contact(cells_across(run))
     yield from about_spacing(run, friction_rows(run), ["max_pressure_MPa"])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -51,6 +51,10 @@ class Loads(Computation[None]):
     def sized(self) -> list[Scene]:
         """Scenes of all runs."""
         return [run.scene for run in self.runs.values()]
+
+    def warnings(self) -> Iterable[str]:
+        """None beside those of the runs."""
+        return ()
 
     def solve(self, call: Call) -> None:
         """Computes the runs; those that are complete stay. Collective; raises what `compute` does."""

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ClassVar, Self
 
-from evolvent.check.scene_warnings import flank_warnings
+import numpy as np
+
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
+from evolvent.gears.problem.loss_factor import ohlendorf_loss_factor
 from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
+from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.results.drawing.table_pictures import TablePicture
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.results.tables.run_warnings import RELIEVE, about_spacing, tip_edge_contact
 from evolvent.results.tables.table import Table
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.kept_pitch import require_resumable
 from evolvent.run.solved_pitches import SolvedPitches, companion_of, solved_pitches
-from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
-from evolvent.scene.scene import Scene
+from evolvent.scene.scene import Scene, SceneError
+from evolvent.scene.schema.errors import InputProblem
 from evolvent.scene.skips import skips
 
 PART = "torque_{}_"
@@ -36,17 +42,28 @@ class LossRow:
 
     torque_Nm: float
     """Torque on the gear that the scene names."""
+    torque_on: str
+    """Gear on which the torque is held constant, pinion or wheel."""
     friction: float
     """Friction coefficient μ."""
     loss_percent: float
     """Friction work over the input work of the pitch."""
     loss_percent_error: float
     """Estimated error of the loss."""
+    input_at_1000_rpm_W: float
+    """Input power at 1000 r/min of the pinion. Where the torque is held on the wheel, the loss adds to it."""
     loss_at_1000_rpm_W: float
     """Friction power at 1000 r/min of the pinion. As μ is the same at all speeds, so is the loss in percent, and the
     power is in proportion to the speed."""
     loss_at_1000_rpm_W_error: float
     """Estimated error of the friction power."""
+    tooth_loss_factor: float
+    """Tooth loss factor H_V: loss over the input and μ; NaN where μ is 0."""
+    tooth_loss_factor_error: float
+    """Estimated error of the tooth loss factor."""
+    ohlendorf_loss_factor: float
+    """Tooth loss factor by Ohlendorf's formula, for teeth that share the load equally: from the numbers of teeth, the
+    base helix angle and the contact ratios alone; NaN where less than one or more than two pairs are in contact."""
 
 
 LOSSES = Table("losses.csv", LossRow)
@@ -76,9 +93,20 @@ class Losses(Computation[list[SolvedPitches]]):
         one = with_percents(self.scene, ())
         return [under_torque(one, torque, (torques[0], torques[-1])) for torque in torques]
 
+    def check(self) -> None:
+        """Raises SceneError for a scene without friction."""
+        if not any(self.scene.contact.friction):
+            found, allowed = "no coefficient but 0", "at least one above 0"
+            raise SceneError([InputProblem("contact.friction", found, allowed, "0.05 is usual for lubricated steel")])
+
     def warnings(self) -> Iterator[str]:
-        """Warnings on charts, flanks and tips."""
-        yield from (*chart_warnings(self.scene), *flank_warnings(gear_problem(self.scene)))
+        """Warnings on charts, flanks and tips, and on an operating speed, which has no effect."""
+        yield from super().warnings()
+        if self.scene.dynamics is not None and self.scene.dynamics.operating_rpm is not None:
+            yield (
+                "dynamics.operating_rpm: without effect on losses.csv, which is under constant torques; `evolvent run` "
+                "solves the contact under the mesh force at this speed."
+            )
 
     def solve(self, call: Call) -> list[SolvedPitches]:
         """Both pitches under each torque, on gears that are condensed once, see `Computation.solve`."""
@@ -92,24 +120,56 @@ class Losses(Computation[list[SolvedPitches]]):
         """The table of all torques."""
         mended = any(load.fine.solved.deflected for load in solved) and skips(self.scene, "deflected-flanks")
         reasons = dict.fromkeys(load.coarse.reason for load in solved if load.coarse.reason)
-        runs = (load.run_data(companion_of(load.coarse)) for load in solved)
+        runs = [load.run_data(companion_of(load.coarse)) for load in solved]
         rows = [row for run in runs for row in _rows(run)]
-        return Results(self.scene, [LOSSES.of(rows)], [*[ON_DEFLECTED] * mended, *reasons])
+        said = [*[ON_DEFLECTED] * mended, *reasons, *_about(runs)]
+        return Results(self.scene, [LOSSES.of(rows)], said)
+
+    def lines(self, out: Path) -> Iterator[str]:
+        """Loss under the heaviest torque at each friction coefficient."""
+        rows = LOSSES.read(out)
+        for row in (row for row in rows if row.torque_Nm == max(each.torque_Nm for each in rows)):
+            percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
+            power = plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)
+            factor = plus_minus(row.tooth_loss_factor, row.tooth_loss_factor_error, 4)
+            beside = "" if math.isnan(row.ohlendorf_loss_factor) else f" (Ohlendorf {row.ohlendorf_loss_factor:.4f})"
+            yield (
+                f"{row.torque_Nm:.4g} N·m on the {row.torque_on}, μ = {row.friction:g}: loss {percent} % of the input, "
+                f"{power} W at {SPEED:g} r/min; tooth loss factor {factor}{beside}"
+            )
 
     def _check_parts(self, call: Call, parts: Mapping[str, Scene]) -> None:
         """Raises ArchiveError, before anything is removed, where stored positions belong to another scene. On rank 0
         alone. parts: of the archive, with the scene under each torque."""
         for part, scene in parts.items() if call.resume else ():
-            require_resumable(scene, call.folder.out, self.command, part)
+            require_resumable(scene, call.folder.out, self.command, part, self.scene)
 
 
 def _rows(run: RunData) -> Iterator[LossRow]:
     """Losses at each friction coefficient under one torque."""
-    power = 1e-3 * run.scene.hertz_estimate().pinion_torque * MeshSpeed(SPEED, run.pair.pinion.z).rad_s  # W
+    load, beside = run.scene.load, ohlendorf_loss_factor(run.pair)
+    passed = 1e-3 * run.scene.hertz_estimate().pinion_torque * MeshSpeed(SPEED, run.pair.pinion.z).rad_s
     for index, row in enumerate(friction_rows(run)):
-        loss, error = row.loss_percent, run.errors.bar("loss_percent", index)
-        watts = power * loss / 100.0, power * error / 100.0
-        yield LossRow(run.scene.load.torque_Nm, row.friction, loss, error, *watts)
+        loss, bar = 0.01 * row.loss_percent, 0.01 * run.errors.bar("loss_percent", index)
+        delivered = 1.0 - loss if load.on == "wheel" else 1.0  # part of the input that the torque is held for
+        factor, factor_bar = (each / row.friction if row.friction else math.nan for each in (loss, bar))
+        yield LossRow(
+            torque_Nm=load.torque_Nm, torque_on=load.on, friction=row.friction, loss_percent=100.0 * loss,
+            loss_percent_error=100.0 * bar, input_at_1000_rpm_W=passed / delivered,
+            loss_at_1000_rpm_W=passed * loss / delivered, loss_at_1000_rpm_W_error=passed * bar / delivered**2,
+            tooth_loss_factor=factor, tooth_loss_factor_error=factor_bar, ohlendorf_loss_factor=beside,
+        )
+
+
+def _about(runs: Sequence[RunData]) -> Iterator[str]:
+    """Warnings on edges that bear and on the spacing of positions, for the heaviest torque that has them."""
+    edges, spaced = "", ""
+    for run in runs:
+        under = f"under {run.scene.load.torque_Nm:.4g} N·m"
+        if found := tip_edge_contact(run):
+            edges = f"{found}, {under}: the friction of edges, whose pressure is singular, is in the loss; {RELIEVE}."
+        spaced = next((f"{under}: {each}" for each in about_spacing(run, friction_rows(run), ["loss_percent"])), spaced)
+    yield from filter(None, (edges, spaced))
 
 
 def losses_picture(rows: Sequence[LossRow]) -> bytes:
@@ -119,19 +179,26 @@ def losses_picture(rows: Sequence[LossRow]) -> bytes:
     frictions = sorted({row.friction for row in rows})
     most = max(rows, key=lambda row: row.loss_percent)
     with styled():
-        where = f"at {most.torque_Nm:.4g} N·m and μ = {most.friction:g}"
-        figure = sheet("Friction loss over the torque", f"At most {most.loss_percent:.3g} % of the input, {where}")
+        figure = sheet(
+            "Friction loss over the torque",
+            f"At most {most.loss_percent:.3g} % of the input, at {most.torque_Nm:.4g} N·m on the {most.torque_on} and "
+            f"μ = {most.friction:g}, tooth loss factor {most.tooth_loss_factor:.3g}",
+        )
         for axes, name, label in zip(
             figure.subplots(1, 2), ("loss_percent", "loss_at_1000_rpm_W"),
             ("loss over input [%]", f"friction power at {SPEED:g} r/min [W]"),
         ):
             for friction, colour in zip(frictions, friction_colours(frictions)):
                 own = [row for row in rows if row.friction == friction]
-                columns = ([getattr(row, each) for row in own] for each in ("torque_Nm", name, f"{name}_error"))
-                axes.errorbar(*columns, color=colour, capsize=3.0, marker="o", label=f"μ = {friction:g}")
+                values, bars = ([getattr(row, each) for row in own] for each in (name, f"{name}_error"))
+                known = {"yerr": bars, "capsize": 3.0} if np.isfinite(bars).all() else {}
+                torques = [row.torque_Nm for row in own]
+                axes.errorbar(torques, values, color=colour, marker="o", label=f"μ = {friction:g}", **known)
+            axes.set_xlim(left=0.0)
             axes.set_ylim(bottom=0.0)
-            axes.set_xlabel("torque [N·m]")
+            axes.set_xlabel(f"torque on the {most.torque_on} [N·m]")
             axes.set_ylabel(label)
         axes.legend(loc="best")
-        foot(figure, "Bars: estimated error, of mesh and spacing of positions. μ is the same at all speeds.")
+        said = ["Bars: estimated error, of mesh and spacing of positions."] * math.isfinite(most.loss_percent_error)
+        foot(figure, *said, "μ is the same at all speeds.")
         return png(figure)

@@ -9,7 +9,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
-from evolvent.check.scene_warnings import flank_warnings
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.tables.run_warnings import RELIEVE
 from evolvent.run.call import Call
@@ -18,7 +17,6 @@ from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.kept_pitch import STORED
 from evolvent.run.strength.pitch_roots import PitchRoots, pitch_roots, root_meshes
 from evolvent.run.strength.summary_lines import summary_lines
-from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.strength.results.gauge_table import GAUGES, gauge_rows
@@ -75,8 +73,7 @@ class Strength(Computation[SolvedRoots]):
 
     def warnings(self) -> Iterator[str]:
         """Warnings on charts, formulas, flanks and tips."""
-        yield from (*chart_warnings(self.scene), *formula_warnings(self._loads))
-        yield from flank_warnings(gear_problem(self.scene))
+        yield from (*super().warnings(), *formula_warnings(self._loads))
 
     def solve(self, call: Call) -> SolvedRoots:
         """Roots on both kinds of meshes, see `Computation.solve`."""

@@ -29,7 +29,6 @@ from evolvent.run.dynamics.transient.kept_cases import CASES, KeptCases
 from evolvent.run.dynamics.transient.moving_companion import moving_companion
 from evolvent.run.dynamics.transient.summary_lines import summary_lines
 from evolvent.run.kept_pitch import STORED
-from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
 from evolvent.scene.vibration_limits import doubtful
@@ -74,8 +73,9 @@ class Transient(Computation[SolvedCases]):
         require_possible(self.scene)
 
     def warnings(self) -> Iterator[str]:
-        """Warnings on charts, on keys without effect, and on a vibration that is taken out of its range."""
-        yield from (*chart_warnings(self.scene), *unused_keys(self.scene.dynamics or DynamicsSection()))
+        """Warnings on charts, flanks and tips, on keys without effect, and on a vibration that is taken out of its
+        range."""
+        yield from (*super().warnings(), *unused_keys(self.scene.dynamics or DynamicsSection()))
         yield from doubtful(self.scene.planned_vibration())
 
     def solve(self, call: Call) -> SolvedCases:

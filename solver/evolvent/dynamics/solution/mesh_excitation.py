@@ -117,12 +117,11 @@ def mesh_excitation(
     check_condensed(gears)
     _check(gears, torques, positions, flanks)
     angles = np.array(uniform_pitch(gears.pair.pinion.z, int(positions)).angles)
-    radius = gears.bodies[gears.load.on].gear.base_radius
 
     def solved(deflected: bool) -> LoadedMesh:
-        found = solved_figures(replace(gears, deflected=deflected), torques, angles, comm, {}, lambda _: None)
+        found = solved_figures(replace(gears, deflected=deflected), torques, angles, comm)
         certify_torques(found, torques)
-        return mesh_of(found, torques, radius, angles, deflected)
+        return mesh_of(found, torques, gears.base_radius, angles, deflected)
 
     loaded = balanced(solved, gears.deflected)
     unloaded = unloaded_error(RigidFlanks(gears.pair, flanks), angles, gears.load.on)

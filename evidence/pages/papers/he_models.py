@@ -74,10 +74,10 @@ def _series_on_bodies(system: SmallSystem, scene: Scene, stiffness: float) -> fl
     stiffness: of the mesh, mean [N/µm]. What it gives way beyond the bodies between held bores, together with the
     series compliance, has to have the stiffness on which the small system has that natural frequency.
     """
-    between, square = system.closing[0] - system.reading[0], natural_square(scene)
+    between, square = system.closing - system.reading, natural_square(scene)
     held = system.compliance(between, between)
     stiffest = 1.0 / (1e-3 / stiffness - held)
-    local = brentq(lambda k: system.natural(0, k)[0] ** 2 / square - 1.0, 1e-2 * stiffest, stiffest)
+    local = brentq(lambda k: system.natural(k)[0] ** 2 / square - 1.0, 1e-2 * stiffest, stiffest)
     return 1e-3 / (1.0 / float(local) + held - 1e-3 / stiffness)
 
 

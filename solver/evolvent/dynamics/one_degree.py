@@ -35,21 +35,20 @@ class OneDegree:
     """Lowest natural frequency ω [rad/s] of the bodies on the mesh that is left out; infinite for rigid bodies."""
 
 
-def one_degree(system: SmallSystem, stiffness: float, mesh: int = 0) -> OneDegree:
-    """One degree of freedom for a small system on one of its meshes. stiffness: mean static one of the mesh between
-    held bores [N/mm].
+def one_degree(system: SmallSystem, stiffness: float) -> OneDegree:
+    """One degree of freedom for a small system. stiffness: mean static one of the mesh between held bores [N/mm].
 
     Raises ValueError where the shapes give way more than the whole mesh.
     """
-    g, b = system.closing[mesh], system.reading[mesh]
+    g, b = system.closing, system.reading
     held, free = system.compliance(g - b, g - b), system.compliance(g, g)
     if held * stiffness >= 1.0:
         raise ValueError(
             f"compliance of gear bodies: wanted less than that of the mesh, {1e3 / stiffness:.4g} µm/N, found "
             f"{1e3 * held:.4g} µm/N"
         )
-    mass, stiffer = system.mass_at(mesh), held - free
+    mass, stiffer = system.rigid_mass, held - free
     if free == 0.0:
         return OneDegree(mass, stiffer, 0.0, inf)
-    natural, following = system.natural(mesh, 1.0 / (1.0 / stiffness - held))
+    natural, following = system.natural(1.0 / (1.0 / stiffness - held))
     return OneDegree(1.0 / (1.0 / stiffness - stiffer) / natural**2, stiffer, system.compliance(g, b), following)

@@ -1,9 +1,9 @@
-"""A small system of gear bodies: mass and stiffness of rotations and static shapes, and the meshes that act on them.
+"""A small system of gear bodies: mass and stiffness of rotations and static shapes, and the mesh that acts on them.
 
-    M z̈ + K z = Σ g_j (F_0j − F_j) ,    x_j = g_j·z ,    t_j = b_j·z
+    M z̈ + K z = g (F_0 − F) ,    x = g·z ,    t = b·z
 
-x_j is the approach of the flanks of mesh j, where its force acts; t_j is that of the bores, the transmission error. K
-is that of the bodies alone, so that rigid rotation is free. Shafts and further meshes add coordinates and rows.
+x is the approach of the flanks, where the mesh force acts; t is that of the bores, the transmission error. K is that of
+the bodies alone, so that rigid rotation is free.
 """
 
 from __future__ import annotations
@@ -49,30 +49,30 @@ class GearShapes:
 
 @dataclass(frozen=True, eq=False)
 class SmallSystem:
-    """Mass, stiffness and meshes of a system with n coordinates and k meshes."""
+    """Mass, stiffness and mesh of a system with n coordinates."""
 
     mass: Floats
     """Mass matrix M (n, n)."""
     stiffness: Floats
     """Stiffness matrix K (n, n) of the bodies."""
     closing: Floats
-    """Approach g (k, n) of the flanks of each mesh by unit coordinates [mm]."""
+    """Approach g (n,) of the flanks by unit coordinates [mm]."""
     reading: Floats
-    """Transmission error b (k, n) of each mesh by unit coordinates [mm]: the approach of rigid bodies that turn as
-    their bores do."""
+    """Transmission error b (n,) by unit coordinates [mm]: the approach of rigid bodies that turn as their bores do."""
 
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
-        """Squared natural frequencies ω² (n,) of the bodies without any mesh, 0 where rigid, ascending, and their
+        """Squared natural frequencies ω² (n,) of the bodies without the mesh, 0 where rigid, ascending, and their
         shapes (n, n), φᵀMφ = 1."""
         squares, shapes = la.eigh(self.stiffness, self.mass)
         squares[squares < RIGID * max(float(squares[-1]), 1.0)] = 0.0
         return squares, shapes
 
-    def mass_at(self, mesh: int) -> float:
-        """Mass m [t] of rigid bodies at a mesh: 1/Σ (g·φ)² over the rigid motions."""
+    @property
+    def rigid_mass(self) -> float:
+        """Mass m [t] of rigid bodies at the mesh: 1/Σ (g·φ)² over the rigid motions."""
         squares, shapes = self.modes
-        return float(1.0 / np.sum((self.closing[mesh] @ shapes[:, squares == 0.0]) ** 2))
+        return float(1.0 / np.sum((self.closing @ shapes[:, squares == 0.0]) ** 2))
 
     def compliance(self, one: Floats, other: Floats) -> float:
         """Compliance Σ (one·φ)(other·φ)/ω² over all elastic modes [mm/N]: displacement along one row (n,) by a unit
@@ -81,16 +81,16 @@ class SmallSystem:
         elastic = squares > 0.0
         return float(np.sum((one @ shapes[:, elastic]) * (other @ shapes[:, elastic]) / squares[elastic]))
 
-    def natural(self, mesh: int, stiffness: float) -> tuple[float, float]:
-        """Natural frequencies ω [rad/s] of small motions in which one mesh alone has a stiffness [N/mm] where its force
-        acts: of the motion that carries most of the transmission error under a change of the mesh force, and of the
-        next faster one in which the mesh has a part; infinite where there is none. A light hub on a soft web, which the
-        torque at its bore turns most, is not taken for the pair's own motion."""
-        g = self.closing[mesh]
+    def natural(self, stiffness: float) -> tuple[float, float]:
+        """Natural frequencies ω [rad/s] of small motions on a mesh with a stiffness [N/mm] where its force acts: of the
+        motion that carries most of the transmission error under a change of the mesh force, and of the next faster one
+        in which the mesh has a part; infinite where there is none. A light hub on a soft web, which the torque at its
+        bore turns most, is not taken for the pair's own motion."""
+        g = self.closing
         squares, shapes = la.eigh(self.stiffness + stiffness * np.outer(g, g), self.mass)
         least = RIGID * max(float(squares[-1]), 1.0)
         safe = np.maximum(squares, least)
-        carried = (g @ shapes) * (self.reading[mesh] @ shapes) / safe
+        carried = (g @ shapes) * (self.reading @ shapes) / safe
         own = int(np.argmax(np.where(squares > least, carried, 0.0)))
         meshing = stiffness * (g @ shapes) ** 2 / safe > MESHING
         faster = squares[own + 1 :][meshing[own + 1 :]]
@@ -105,4 +105,4 @@ def pair_system(pinion: GearShapes, wheel: GearShapes) -> SmallSystem:
     reading = np.zeros_like(closing)
     reading[list(turns)] = closing[list(turns)]
     mass, stiffness = (la.block_diag(*parts) for parts in ([g.mass for g in gears], [g.stiffness for g in gears]))
-    return SmallSystem(mass, stiffness, closing[None], reading[None])
+    return SmallSystem(mass, stiffness, closing, reading)

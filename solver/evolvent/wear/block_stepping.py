@@ -158,11 +158,9 @@ class Block(Generic[E]):
     refused: int
 
 
-def initial_wear_state(
-    model: WearModel[E], depth: Floats, settings: BlockSettings, cycles: float = 0.0
-) -> WearState[E]:
+def initial_wear_state(model: WearModel[E], depth: Floats, settings: BlockSettings) -> WearState[E]:
     """The state at depths (n,) [mm] from which a study starts. Raises NotConverged, SearchError."""
-    return WearState(cycles, depth, model.evaluate(depth), None, settings.first)
+    return WearState(0.0, depth, model.evaluate(depth), None, settings.first)
 
 
 def next_block(model: WearModel[E], state: WearState[E], end: float, settings: BlockSettings) -> Block[E]:

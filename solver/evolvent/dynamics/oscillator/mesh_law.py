@@ -87,10 +87,8 @@ class MeshLaw:
         return max(float(_slopes(side).max()) for side in (self.front, self.back))
 
 
-def force_side(
-    depths: Floats, force: Floats, error: Floats, sign: float = 1.0, last_slope: Floats | None = None
-) -> MeshSide:
-    """A side through values at k equidistant phases 0, 1/k, ...: cubic splines of x and, periodic, of τ.
+def force_side(depths: Floats, force: Floats, error: Floats, last_slope: Floats | None = None) -> MeshSide:
+    """The loaded side through values at k equidistant phases 0, 1/k, ...: cubic splines of x and, periodic, of τ.
 
     depths: (m + 1,) from 0 [mm].
     force: (k, m + 1) F there [N], 0 in the first column.
@@ -103,7 +101,7 @@ def force_side(
     periodic = np.concatenate([along, along[:, :, :1]], axis=2)
     both = CubicSpline(phases, periodic, axis=2, bc_type="periodic").c  # (4 of τ, k, 4 of x, m)
     coefficients = np.ascontiguousarray(both[::-1, :, ::-1].transpose(1, 3, 2, 0))
-    return MeshSide(sign, phases, _periodic(phases, error), depths, coefficients)
+    return MeshSide(1.0, phases, _periodic(phases, error), depths, coefficients)
 
 
 def linear_side(stiffness: Floats, error: Floats, sign: float = 1.0) -> MeshSide:
@@ -112,17 +110,17 @@ def linear_side(stiffness: Floats, error: Floats, sign: float = 1.0) -> MeshSide
     return _linear(phases, _periodic(phases, stiffness), _periodic(phases, error), sign)
 
 
-def stepped_side(phases: Floats, stiffness: Floats, sign: float = 1.0) -> MeshSide:
+def stepped_side(phases: Floats, stiffness: Floats) -> MeshSide:
     """F = k x with a constant k (n,) [N/mm] between phases (n + 1,), from 0 to 1; e is 0."""
     constant = np.zeros((len(stiffness), 4))
     constant[:, 0] = stiffness
-    return _linear(np.asarray(phases, dtype=float), constant, np.zeros_like(constant), sign)
+    return _linear(np.asarray(phases, dtype=float), constant, np.zeros_like(constant), 1.0)
 
 
-def no_side(sign: float = -1.0) -> MeshSide:
-    """A side that is never touched: unlimited backlash."""
+def no_side() -> MeshSide:
+    """Back flanks that are never touched: unlimited backlash."""
     offset = np.array([[NEVER, 0.0, 0.0, 0.0]])
-    return _linear(np.array([0.0, 1.0]), np.zeros((1, 4)), offset, sign)
+    return _linear(np.array([0.0, 1.0]), np.zeros((1, 4)), offset, -1.0)
 
 
 def behind(side: MeshSide, backlash: float) -> MeshSide:

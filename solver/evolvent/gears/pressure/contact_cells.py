@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from evolvent.gears.pressure.flank_facets import HEIGHT_TOLERANCE
 from evolvent_meshes.arrays import Floats
 
 FEWEST_CELLS = 2.0
@@ -16,8 +17,6 @@ SCATTER = "may be off by 15 % and more and are for orientation only"
 """Words of warnings on the error of peak pressures on few elements."""
 FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
 """Words of warnings on the remedy for few elements."""
-HEIGHT_TOLERANCE = 1e-6
-"""Largest difference of height of the nodes of one row [mm]."""
 
 
 def cells_across(

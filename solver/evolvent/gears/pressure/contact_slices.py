@@ -12,7 +12,7 @@ from evolvent.fem.material import Material, contact_modulus
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.pressure.contact_cells import FEWEST_FITTED
 from evolvent.gears.pressure.contact_curvature import nominal_radius, radius_in_place
-from evolvent.gears.pressure.flank_facets import FlankFacets
+from evolvent.gears.pressure.flank_facets import HEIGHT_TOLERANCE, FlankFacets
 from evolvent.gears.pressure.relief_starts import ContactWidth, over_relief_starts
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Bools, Floats, Ints
@@ -20,8 +20,6 @@ from evolvent_meshes.gears.pair import GearPair
 
 FEWEST_POINTS = 5
 """Points under pressure that the fit of a half-ellipse needs."""
-HEIGHT_TOLERANCE = 1e-6
-"""Heights [mm] closer than this are equal."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from evolvent_meshes.arrays import Floats
 SAME_ROW = 1e-6
 """Curvature radii closer than this are of one row of nodes [mm]; between the nodes of a coarser flank they scatter."""
 HEIGHT_TOLERANCE = 1e-6
-"""Nodes within this height [mm] of the end of the face lie there; elsewhere modifications of the lead move the rows."""
+"""Heights [mm] closer than this are equal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +27,8 @@ class FlankFacets:
 
     @staticmethod
     def of(z: Floats, roll_lengths: Floats, base_radius: float, order: int) -> FlankFacets:
-        """Facets of a flank. z, roll_lengths: (n,) heights and curvature radii of the flank's nodes [mm]; order: of the
-        facets."""
+        """Facets of a flank, from its nodes at the end of the face; elsewhere modifications of the lead move the rows.
+        z, roll_lengths: (n,) heights and curvature radii of the flank's nodes [mm]; order: of the facets."""
         ordered = np.sort(roll_lengths[z <= z.min() + HEIGHT_TOLERANCE])
         rows = ordered[np.diff(ordered, prepend=-np.inf) > SAME_ROW]
         return FlankFacets(z, rows[::-1][::order][::-1], base_radius)

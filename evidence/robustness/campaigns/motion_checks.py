@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from evidence.verification.references.time_integration import integrate
 from evolvent.dynamics.oscillator.mesh_law import MeshSide
 from evolvent.dynamics.oscillator.steady_state import Scales
-from evolvent.dynamics.oscillator.time_integration import integrate
 from evolvent.dynamics.oscillator.torsional_model import History, TorsionalModel, history, period_map
 from evolvent_meshes.arrays import Bools, Floats, Ints
 

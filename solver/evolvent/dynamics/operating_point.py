@@ -34,15 +34,13 @@ from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad, TorqueCourse
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.problem.flank_deviations import FlankCharts
 from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.gears.sweep.position_search import SearchedAt, SharedPosition, searched_at
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
-Charts = tuple[FlankChart | None, FlankChart | None]
-"""Deviations of pinion and wheel flank; None: as designed."""
 Motion = SteadyState | Settled
 SLOWEST, FASTEST = 1.0 / 6.0, 1.6
 """Speeds at which a run-up and a run-down begin, over the natural speed."""
@@ -141,7 +139,7 @@ class OperatingPoint:
     """Mesh force at each phase where the motion repeats after several mesh periods: their mean, which gives the wear of
     all together, or their largest, which is safe for stresses."""
 
-    def on(self, model: GearModel, charts: Charts, comm: MPI.Comm, before: Start | None = None) -> Operation:
+    def on(self, model: GearModel, charts: FlankCharts, comm: MPI.Comm, before: Start | None = None) -> Operation:
         """Operation of condensed gears; their own torque is the static one. Collective.
 
         Where the mesh force has stayed within some of the torques of the force surface, those are solved alone, and

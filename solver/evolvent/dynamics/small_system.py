@@ -82,9 +82,10 @@ class SmallSystem:
         return float(np.sum((one @ shapes[:, elastic]) * (other @ shapes[:, elastic]) / squares[elastic]))
 
     def natural(self, stiffness: float) -> tuple[float, float]:
-        """Natural frequencies ω [rad/s] of small motions on a mesh with a stiffness [N/mm] where its force acts: of the motion that carries most of the transmission error under a change of the mesh force, and of the
-        next faster one in which the mesh has a part; infinite where there is none. A light hub on a soft web, which the
-        torque at its bore turns most, is not taken for the pair's own motion."""
+        """Natural frequencies ω [rad/s] of small motions on a mesh with a stiffness [N/mm] where its force acts: of the
+        motion that carries most of the transmission error under a change of the mesh force, and of the next faster one
+        in which the mesh has a part; infinite where there is none. A light hub on a soft web, which the torque at its
+        bore turns most, is not taken for the pair's own motion."""
         g = self.closing
         squares, shapes = la.eigh(self.stiffness + stiffness * np.outer(g, g), self.mass)
         least = RIGID * max(float(squares[-1]), 1.0)

@@ -51,6 +51,11 @@ class GearModel:
     """Number of angular pitches of a sweep."""
 
     @property
+    def base_radius(self) -> float:
+        """Base radius of the gear with the torque [mm]."""
+        return self.bodies[self.load.on].gear.base_radius
+
+    @property
     def width_factor(self) -> float:
         """Factor from forces, torques and volumes of the model to those of the gears: the face width [mm] of plane
         gears, else 1."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from evolvent.gears.ring.ring_compliance import turn as turn
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import misalignment_rotation, misalignment_shift
 from evolvent_meshes.gears.member import Member
@@ -85,14 +86,6 @@ def line_of_action(pair: GearPair, d: int) -> Floats:
     grows, and e_z × n, along which the pinion slides over the wheel by (1 + 1/u) ξ per radian."""
     α = pair.working_pressure_angle
     return np.array([[np.sin(α), np.cos(α), 0.0], [-np.cos(α), np.sin(α), 0.0]])[:, :d]
-
-
-def turn(angle: float, d: int) -> Floats:
-    """Rotation matrix about +z, (d, d)."""
-    c, s = np.cos(angle), np.sin(angle)
-    R = np.eye(d)
-    R[:2, :2] = [[c, -s], [s, c]]
-    return R
 
 
 def spin(points: Floats, centre: Floats, axis: Floats = E_Z) -> Floats:

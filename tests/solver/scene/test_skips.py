@@ -17,7 +17,7 @@ from evolvent.check.check_report import overview
 from evolvent.commands.app import main
 from evolvent.gears import gear_model
 from evolvent.gears.full_gear import WholeGear
-from evolvent.gears.meshing.sector_meshes import sector_meshes
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch
 from evolvent.gears.sweep.position_search import shared_position
@@ -28,6 +28,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import SKIPS, one_mesh_reason, skip_named, skipped, switched_off
+from evolvent_meshes.gears.member import Member
 from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
 from tests.support.running.patches import calling_first
@@ -134,7 +135,7 @@ def histories(scene: Scene) -> int:
 
 
 COUNTED: dict[SkipName, tuple[tuple[str, ...], Callable[[Scene], int], int, int]] = {
-    "plane": (SPUR, lambda scene: sector_meshes(gear_problem(scene))[0].dimension, 2, 3),
+    "plane": (SPUR, lambda scene: gear_mesh(gear_problem(scene), Member.PINION).dimension, 2, 3),
     "one-pitch": ((SMOOTH,), lambda scene: len(pitch_of(scene).angles), 2, 4),
     "far-teeth": ((SMOOTH,), lambda scene: len(gear_problem(scene).contact_teeth), 4, 20),
 }
@@ -174,7 +175,7 @@ def test_the_whole_gear_is_factored() -> None:
 def test_the_body_is_refined() -> None:
     """Without the skip the back flank has the loaded flank's elements, and the bore three times as many radially."""
     case = Case("coarse-body", SPUR)
-    short, long = (sector_meshes(gear_problem(case.scene(off)))[0] for off in (False, True))
+    short, long = (gear_mesh(gear_problem(case.scene(off)), Member.PINION) for off in (False, True))
     assert len(long.facets["flank"]) == len(short.facets["flank"]) > len(short.facets["back"]) - 5
     assert len(long.facets["back"]) == len(long.facets["flank"]) + 15
     assert len(long.facets["cut_low"]) > 2.5 * len(short.facets["cut_low"])

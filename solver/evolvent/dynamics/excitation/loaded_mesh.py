@@ -58,18 +58,16 @@ class LoadedMesh:
 
 
 def loaded_mesh(
-    model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm = MPI.COMM_WORLD,
-    known: Figures = MappingProxyType({}),
-    keep: Callable[[Figures], None] = lambda _: None,
+    model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm = MPI.COMM_WORLD
 ) -> LoadedMesh:
     """The mesh at some positions, see `solved_figures`, which need not be a pitch."""
-    found = solved_figures(model, torques, angles, comm, known, keep)
-    return mesh_of(found, torques, _radius(model), angles, model.deflected)
+    found = solved_figures(model, torques, angles, comm)
+    return mesh_of(found, torques, model.base_radius, angles, model.deflected)
 
 
 def solved_figures(
-    model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm, known: Figures,
-    keep: Callable[[Figures], None],
+    model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm,
+    known: Figures = MappingProxyType({}), keep: Callable[[Figures], None] = lambda _: None,
 ) -> Figures:
     """Solves all positions under all torques; the ranks divide the positions, and each solves one at a time.
 
@@ -130,7 +128,7 @@ def loaded_mesh_again(
     rows = together(comm, lambda: tuple(_searched(models, own, before)))
     figures = [np.array([figures_of(*each) for each in zip(models, row)]) for row in rows]
     found = dict(enumerate(each for part in comm.allgather(figures) for each in part))
-    mesh = mesh_of(found, torques, _radius(model), angles)
+    mesh = mesh_of(found, torques, model.base_radius, angles)
     return mesh, tuple(dict(zip(torques, row)) for row in rows)
 
 
@@ -138,11 +136,6 @@ def under_torques(model: GearModel, torques: Sequence[float]) -> list[GearModel]
     """The gears under each constant torque [N·mm]."""
     loads = [GearLoad(torque / model.width_factor, model.load.on) for torque in torques]
     return [replace(model, load=load) for load in loads]
-
-
-def _radius(model: GearModel) -> float:
-    """Base radius of the gear with the torque [mm]."""
-    return model.bodies[model.load.on].gear.base_radius
 
 
 def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float, float, float]:
@@ -196,11 +189,11 @@ def _predicted(
     if ahead and (before := _step_along_tangent(models, ahead[:j])) > 0.0:
         last, this = (equilibrium(model, each) for model, each in zip(models[j - 1 : j + 1], ahead[j - 1 : j + 1]))
         step *= (this.transmission_error - last.transmission_error) / before
-    return equilibrium(models[j - 1], row[-1]).turned(models[j].load.on, step / _radius(models[j])).beyond_nominal
+    return equilibrium(models[j - 1], row[-1]).turned(models[j].load.on, step / models[j].base_radius).beyond_nominal
 
 
 def _step_along_tangent(models: Sequence[GearModel], row: Sequence[SharedPosition]) -> float:
     """Growth of the transmission error [mm] up to the torque that follows those of `row`, at the last one's
     stiffness."""
     last, this = models[len(row) - 1 : len(row) + 1]
-    return (this.load.torque - last.load.torque) / _radius(this) / row[-1].stiffness
+    return (this.load.torque - last.load.torque) / this.base_radius / row[-1].stiffness

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.gears.kinematics import PairRotation
-from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.problem.flank_deviations import FlankCharts
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.member import Member
@@ -43,7 +43,7 @@ class RigidFlanks:
 
     pair: GearPair
     """Geometry of the gear pair."""
-    charts: tuple[FlankChart | None, FlankChart | None] = (None, None)
+    charts: FlankCharts = (None, None)
     """Deviations of pinion and wheel; None: as designed."""
 
     @property

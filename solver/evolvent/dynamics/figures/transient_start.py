@@ -8,11 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.figures.transient import BAND, BANDS, STATIC
+from evolvent.dynamics.figures.transient import BAND, BANDS, STATIC, Colour
 from evolvent.dynamics.results.transient.beginning import StartRow
 from evolvent.results.drawing.style import foot, friction_colours, note, png, sheet, styled
 
-Colour = tuple[float, ...]
 LONG = 5
 """Number of friction coefficients from which on the legend has two columns."""
 UNKNOWN = float("nan")

@@ -81,12 +81,9 @@ class MeshLaw:
         cells = [np.searchsorted(side.phases, middle, side="right") - 1 for side in sides]
         return stops, np.column_stack(cells).astype(np.int64)
 
+    @cached_property
     def stiffest(self) -> float:
         """The largest ∂F/∂x [N/mm] at the ends and middles of all intervals, from which steps in time are chosen."""
-        return self._stiffest
-
-    @cached_property
-    def _stiffest(self) -> float:
         return max(float(_slopes(side).max()) for side in (self.front, self.back))
 
 

@@ -66,4 +66,4 @@ def decay_periods(model: TorsionalModel, period: float) -> int:
 
 def static_state(model: TorsionalModel) -> Floats:
     """State (2,) at rest under the load on the stiffest mesh: a start for `settled`."""
-    return np.array([model.load / model.law.stiffest(), 0.0])
+    return np.array([model.load / model.law.stiffest, 0.0])

@@ -59,7 +59,7 @@ class Scales:
     @staticmethod
     def of(model: TorsionalModel) -> Scales:
         """Scales from the static deflection on the stiffest mesh."""
-        length = abs(model.load) / model.law.stiffest() or 1e-3
+        length = abs(model.load) / model.law.stiffest or 1e-3
         return Scales(length, length * model.fastest)
 
     @property

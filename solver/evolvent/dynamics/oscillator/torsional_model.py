@@ -70,13 +70,13 @@ class TorsionalModel:
     @cached_property
     def fastest(self) -> float:
         """Angular frequency [rad/s] on the stiffest mesh, from which time steps are chosen."""
-        return float(np.sqrt(self.law.stiffest() / self.mass))
+        return float(np.sqrt(self.law.stiffest / self.mass))
 
     @cached_property
     def reach(self) -> float:
         """Largest deflection of the mesh [mm] that is still a motion of a gear pair (`BEYOND_MEASURE`)."""
         swing = max(float(np.ptp(side.offset[:, 0])) for side in (self.law.front, self.law.back))
-        return BEYOND_MEASURE * (abs(self.load) / self.law.stiffest() + swing)
+        return BEYOND_MEASURE * (abs(self.load) / self.law.stiffest + swing)
 
     def escaped(self, state: Floats) -> bool:
         """Whether a state (2,) at phase 0 is beyond `reach`, or faster than an oscillation of that size, or not a

@@ -102,11 +102,10 @@ def vibration_errors(own: Vibration, others: Sequence[OtherVibration], mean_stif
 
     mean_stiffness: its error [N/mm], see `mean_stiffness_error`.
     """
-    jumps = {way: own.jumps[way] for way in WAYS}
     return VibrationErrors(
         {way: _error(own, others, way, lambda drive, each: each.equivalent_amplitude) for way in WAYS},
         {way: _error(own, others, way, lambda drive, each: each.largest_force / drive.model.load) for way in WAYS},
-        {way: tuple(map(float, _jump_errors(speeds, others, way))) for way, speeds in jumps.items()},
+        {way: tuple(map(float, _jump_errors(speeds, others, way))) for way, speeds in own.jumps.items()},
         mean_stiffness,
         _natural_speed_error(own.drive, mean_stiffness),
         tuple(sentence for other in others for sentence in _said(own, other)),

@@ -16,7 +16,7 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh, certify_torques, mesh_of, solved_figures
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.problem.flank_deviations import FlankCharts
 from evolvent.gears.solution.certified_pitch import balanced
 from evolvent.gears.solution.solver import check_condensed
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
@@ -27,8 +27,6 @@ from evolvent_meshes.input_checks import Words, is_index, number, numbers, refus
 
 FEWEST_POSITIONS = 3
 """Least number of positions of a pitch: two do not show the first mesh harmonic."""
-Charts = tuple[FlankChart | None, FlankChart | None]
-"""Deviations of the flanks of pinion and wheel; None: as designed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +100,7 @@ class GearExcitation:
 
 
 def mesh_excitation(
-    gears: GearModel, torques: Sequence[float], positions: int = 20, flanks: Charts = (None, None),
+    gears: GearModel, torques: Sequence[float], positions: int = 20, flanks: FlankCharts = (None, None),
     comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> GearExcitation:
     """Excitation of condensed gears, as of `evolvent excitation`, without error bars. Where energy does not balance
@@ -119,12 +117,11 @@ def mesh_excitation(
     check_condensed(gears)
     _check(gears, torques, positions, flanks)
     angles = np.array(uniform_pitch(gears.pair.pinion.z, int(positions)).angles)
-    radius = gears.bodies[gears.load.on].gear.base_radius
 
     def solved(deflected: bool) -> LoadedMesh:
-        found = solved_figures(replace(gears, deflected=deflected), torques, angles, comm, {}, lambda _: None)
+        found = solved_figures(replace(gears, deflected=deflected), torques, angles, comm)
         certify_torques(found, torques)
-        return mesh_of(found, torques, radius, angles, deflected)
+        return mesh_of(found, torques, gears.base_radius, angles, deflected)
 
     loaded = balanced(solved, gears.deflected)
     unloaded = unloaded_error(RigidFlanks(gears.pair, flanks), angles, gears.load.on)
@@ -132,7 +129,7 @@ def mesh_excitation(
     return GearExcitation(gears.pair, gears.load.on, (pinion, wheel), MeshExcitation(unloaded, loaded))
 
 
-def _check(gears: GearModel, torques: Sequence[float], positions: int, flanks: Charts) -> None:
+def _check(gears: GearModel, torques: Sequence[float], positions: int, flanks: FlankCharts) -> None:
     """Raises InputError for torques that do not ascend from above 0, too few positions, and charts that are not those
     of the condensed gears."""
     numbers("torques", torques)

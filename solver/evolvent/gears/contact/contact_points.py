@@ -55,6 +55,10 @@ class ContactPoints:
         """Contact pressure λ (q,) [MPa]."""
         return self.traction[:, 0]
 
+    def normal_force(self, tooth: int) -> float:
+        """Normal force of a tooth pair [N; N/mm in 2D]."""
+        return float(np.sum((self.weights * self.pressure)[self.tooth == tooth]))
+
 
 def contact_points(
     geometry: ContactGeometry, traction: Floats, friction: float, beyond_nominal: tuple[float, float]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from evolvent.gears.meshing.element_sizes import sector_resolutions
+from evolvent.gears.meshing.element_sizes import sector_resolution
 from evolvent.gears.meshing.modifications import too_much_relief
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.gears.member import Member
@@ -27,22 +27,17 @@ FACET_OF = {
 }
 
 
-def sector_meshes(problem: GearProblem) -> tuple[MeshData, MeshData]:
-    """Meshes of (pinion's, wheel's) sector in its own frame [mm]; of a plane problem the mid-face section. Raises
-    MeshError."""
-    return gear_mesh(problem, Member.PINION), gear_mesh(problem, Member.WHEEL)
-
-
 def gear_mesh(
     problem: GearProblem, member: Member, adapted: Adaption = lambda resolution: resolution
 ) -> MeshData:
-    """The sector of the pinion or the wheel. adapted: changes its resolution.
+    """The sector of the pinion or the wheel in its own frame [mm]; of a plane problem the mid-face section. adapted:
+    changes its resolution.
 
     Raises MeshError, also where first-order cells fold in a thin tooth, and TooMuchRelief where the flank's
     modification folds the cells.
     """
     shape = PLANE_SHAPE[problem.mesh.shape] if problem.is_plane else problem.mesh.shape
-    resolution = adapted(sector_resolutions(problem)[member])
+    resolution = adapted(sector_resolution(problem, member))
     try:
         mesh = sector_mesh(problem.pair.gears[member], resolution, shape)
     except MeshError as error:

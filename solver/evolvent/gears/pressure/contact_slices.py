@@ -214,7 +214,6 @@ def tooth_summaries(result: PositionResult, cut: Slices) -> list[ToothSummary]:
         here = cut.tooth == tooth
         edge = float(cut.largest[here & cut.edge].max(initial=0.0))
         kink = float(cut.peak[here & cut.kink].max(initial=0.0))
-        points = result.contact.tooth == tooth
-        force = float(np.sum(result.contact.pressure[points] * result.contact.weights[points]))
-        summaries.append(ToothSummary(int(tooth), force, edge, kink, float(cut.width[here].sum() / cos_b)))
+        force, length = result.contact.normal_force(tooth), float(cut.width[here].sum() / cos_b)
+        summaries.append(ToothSummary(int(tooth), force, edge, kink, length))
     return summaries

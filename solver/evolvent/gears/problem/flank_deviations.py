@@ -22,7 +22,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from evolvent.gears.problem.face_coverage import SAME, FaceCoverage
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Floats, different
 from evolvent_meshes.csv_tables import Column, TableError, has_column, read_columns
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.input_checks import Words, array, instance, refuse
@@ -78,7 +78,7 @@ class FlankChart:
         wanted = (DIAMETER, DEPTH, HEIGHT) if has_column(path, HEIGHT) else (DIAMETER, DEPTH)
         d, h, *rest = read_columns(path, wanted)
         z = rest[0] if rest else np.zeros_like(d)
-        (diameters, row), (heights, column) = _levels(d), _levels(z)
+        (diameters, row), (heights, column) = different(d, SAME), different(z, SAME)
         count = np.zeros((len(diameters), len(heights)), dtype=np.int64)
         np.add.at(count, (row, column), 1)
         if len(diameters) < 2 or not (count == 1).all():
@@ -150,20 +150,15 @@ class FlankChart:
         return stream.getvalue()
 
 
+FlankCharts = tuple[FlankChart | None, FlankChart | None]
+"""Deviations of the flanks of pinion and wheel; None: as designed."""
+
+
 @lru_cache(maxsize=4)
 def _read(path: Path, changed: int, size: int) -> FlankChart:
     """Chart from a CSV file. changed, size: time of the last change and size of the file, so that a changed one is read
     again."""
     return FlankChart.parsed(path)
-
-
-def _levels(values: Floats) -> tuple[Floats, Ints]:
-    """Different values, ascending, and the index of each value among them (n,)."""
-    order = np.argsort(values)
-    new = np.concatenate([[False], np.diff(values[order]) > SAME])
-    which = np.empty(len(values), dtype=np.int64)
-    which[order] = np.cumsum(new)
-    return values[order][np.concatenate([[True], new[1:]])], which
 
 
 def shown_path(path: Path | str) -> str:

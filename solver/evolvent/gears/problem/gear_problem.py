@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from evolvent.fem.material import STEEL, Material
-from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.problem.flank_deviations import FlankChart, FlankCharts
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -108,7 +108,7 @@ class GearProblem:
     """Materials of pinion and wheel."""
     mesh: MeshSettings = MeshSettings()
     """Fineness and cells of the sectors' meshes."""
-    flanks: tuple[FlankChart | None, FlankChart | None] = (None, None)
+    flanks: FlankCharts = (None, None)
     """Measured or worn flanks of pinion and wheel; None: as designed. A chart that covers 80 % of its gear's face, its
     middle within 5 % of mid-face, is extended to the whole face, of which `condense` warns; less is refused."""
     options: GearOptions = GearOptions()

@@ -10,8 +10,8 @@ moves by R v_{s+1}, and
 so that y_s = C f_s + Σ_t T G_st Tᵀ f_t. T is smooth (the cut is away from the flank), so the coupling of a pair of
 teeth through all other sectors is one small matrix between a few modes (`ring_modes`).
 
-The ring is closed by default. A few teeth with free outer cuts are a wedge held at a narrow bore, which tilts. Error of
-the deflection of two or three touching teeth under a tangential load, against the closed ring:
+The ring is closed. A few teeth with free outer cuts would be a wedge held at a narrow bore, which tilts. Error of the
+deflection of two or three touching teeth under a tangential load, against the closed ring:
 
     teeth more on each side                 1       2       3       4
     spur, 50 teeth × 3 mm, bore 70 mm     600 %   220 %   110 %    63 %
@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -36,7 +36,7 @@ from evolvent.fem.condensation.schur_complement import SectorCondensation
 from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_modes import coupling
 from evolvent.gears.ring.ring_window import RingWindow
-from evolvent.gears.ring.sector_interfaces import ClosedRing, JoinedSectors, OpenChain
+from evolvent.gears.ring.sector_interfaces import ClosedRing
 from evolvent_meshes.arrays import Floats, Ints
 
 
@@ -82,15 +82,13 @@ class Compliance(Protocol):
 
 @dataclass(frozen=True)
 class ChainSettings:
-    """The teeth that rows may name, and how the sectors are joined.
+    """The teeth that rows may name, of a ring of 2π/pitch sectors.
 
     pitch: angle of a sector [rad].
     count: number of teeth.
     first: number of the lowest tooth; tooth s is tooth 0 turned by +s pitches.
     dimension: of space, d.
     tolerance: relative error (Frobenius) of the coupling T G Tᵀ; 1e-13 is rounding.
-    ends: "closed" joins all 2π/pitch sectors of the gear, whatever the count; "free" and "clamped" model only `count`
-        sectors, and leave the two outermost cut faces free or hold them.
 
     Raises ValueError where the sectors cannot be closed.
     """
@@ -100,15 +98,13 @@ class ChainSettings:
     first: int = 0
     dimension: int = 3
     tolerance: float = 1e-13
-    ends: Literal["closed", "free", "clamped"] = "closed"
 
     def __post_init__(self) -> None:
         sectors = 2 * np.pi / self.pitch
-        if self.ends == "closed" and (abs(sectors - round(sectors)) > 1e-9 * sectors or self.count > round(sectors)):
+        if abs(sectors - round(sectors)) > 1e-9 * sectors or self.count > round(sectors):
             raise ValueError(
                 f"closed ring of sectors: wanted a pitch that divides the circle and no more teeth than it has, found "
-                f"a pitch of {self.pitch} rad ({sectors:.6f} to the circle) and {self.count} teeth; correct them or "
-                'leave the ends "free"'
+                f"a pitch of {self.pitch} rad ({sectors:.6f} to the circle) and {self.count} teeth; correct them"
             )
 
 
@@ -175,7 +171,7 @@ class ChainedCompliance:
             for tooth, (dofs, values, _) in self._loads(rows_in, forces).items()
         }
         low_faces = self._joined(self._frames.T @ self._sector.stiffness @ self._frames).displacements(sources)
-        # a closed ring has more sectors than the named teeth
+        # the ring has more sectors than the named teeth
         return {tooth: (self._frames @ np.concatenate(low_faces[i : i + 2])).T for i, tooth in enumerate(self.teeth)}
 
     def observed_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
@@ -194,11 +190,8 @@ class ChainedCompliance:
             result[tooth] = moved.reshape(len(forces), -1, self.dimension)
         return result
 
-    def _joined(self, stiffness: Floats) -> JoinedSectors:
-        settings = self._settings
-        if settings.ends == "closed":
-            return ClosedRing(stiffness, round(2 * np.pi / settings.pitch), settings.count)
-        return OpenChain(stiffness, settings.count, settings.ends == "clamped")
+    def _joined(self, stiffness: Floats) -> ClosedRing:
+        return ClosedRing(stiffness, round(2 * np.pi / self._settings.pitch), self._settings.count)
 
     def _loads(self, rows: Ints, forces: Floats) -> dict[int, tuple[Ints, Floats, Floats]]:
         """Tooth -> dofs, forces in the sector's frame, amplitudes of the modes."""
@@ -234,7 +227,7 @@ class ChainedCompliance:
         return self._coupling.between(self._place(tooth), self._place(other))
 
     def _turn(self, tooth: int) -> Floats:
-        return turn_by(tooth * self._pitch, self.dimension)
+        return turn(tooth * self._pitch, self.dimension)
 
     def _own(self, nodes: Ints) -> Floats:
         """Compliance of the sector between some nodes, in its own frame."""
@@ -245,16 +238,17 @@ class ChainedCompliance:
 def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
     """Matrix from face displacements (2c = `size`: low; high in the frame of the next sector) to those in the sector's
     own."""
-    turn = turn_by(settings.pitch, settings.dimension)
-    low, high = sp.eye(size // 2), sp.kron(sp.eye(size // 2 // settings.dimension), turn)
+    next_frame = turn(settings.pitch, settings.dimension)
+    low, high = sp.eye(size // 2), sp.kron(sp.eye(size // 2 // settings.dimension), next_frame)
     return sp.csr_array(sp.block_diag([low, high]))
 
 
-def turn_by(angle: float, dimension: int) -> Floats:
-    """Rotation matrix about +z (d, d)."""
-    turn = np.eye(dimension)
-    turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
-    return turn
+def turn(angle: float, d: int) -> Floats:
+    """Rotation matrix about +z, (d, d)."""
+    c, s = np.cos(angle), np.sin(angle)
+    R = np.eye(d)
+    R[:2, :2] = [[c, -s], [s, c]]
+    return R
 
 
 def _dofs(nodes: Ints, dimension: int) -> Ints:

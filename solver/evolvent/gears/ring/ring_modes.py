@@ -19,7 +19,7 @@ import scipy.sparse as sp
 from scipy.linalg import block_diag, cholesky, eigh, solve_triangular, svd
 
 from evolvent.fem.condensation.schur_complement import SectorCondensation
-from evolvent.gears.ring.sector_interfaces import JoinedSectors
+from evolvent.gears.ring.sector_interfaces import ClosedRing
 from evolvent_meshes.arrays import Floats, Ints
 
 # A ring gives way up to 6,000 times more than a face between held ones (60 teeth of 2.1 mm, bore 20 mm). Smooth faces
@@ -46,7 +46,7 @@ class Coupling:
 
 
 def coupling(
-    sector: SectorCondensation, frames: sp.csr_array, joined: Callable[[Floats], JoinedSectors], tolerance: float
+    sector: SectorCondensation, frames: sp.csr_array, joined: Callable[[Floats], ClosedRing], tolerance: float
 ) -> Coupling:
     """Coupling of sectors through their faces.
 

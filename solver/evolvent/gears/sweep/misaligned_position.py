@@ -9,13 +9,13 @@ import numpy as np
 from evolvent.contact.newton.equilibrium import frictionless, normal_part
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.contact.contact_geometry import ContactGeometry
-from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
+from evolvent.gears.contact.overlap_check import unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.contact.tooth_contact import ToothContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
-from evolvent.gears.sweep.position_search import SharedPosition, free_rotation, free_shift
-from evolvent.gears.sweep.worn_position import STALE
+from evolvent.gears.sweep.position_search import SharedPosition
+from evolvent.gears.sweep.worn_position import search_holds
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -44,13 +44,8 @@ def misaligned_on(model: GearModel, shared: SharedPosition) -> SharedPosition | 
         smooth = frictionless(normal_part(system), shared.smooth.traction[:, 0] > 0.0)
     except NotConverged:
         return None
-    near = abs(free_shift(model, smooth)) <= STALE * model.pair.pinion.normal_module
-    if not near or contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0):
-        return None
-    unsearched = unsearched_overlaps(contact.geometry, model.teeth)
-    if overlap_outside(contact, unsearched, smooth.force, free_rotation(model, smooth)) != 0.0:
-        return None
-    return SharedPosition(contact, system, smooth, unsearched)
+    found = SharedPosition(contact, system, smooth, unsearched_overlaps(contact.geometry, model.teeth))
+    return found if search_holds(model, found) else None
 
 
 def _misaligned(geometry: ContactGeometry, tooth: ToothContact, stand: PairRotation) -> ToothContact:

@@ -223,13 +223,13 @@ def course_after(model: GearModel, shared: SharedPosition, before: RotationCours
 
 def free_shift(model: GearModel, equilibrium: Equilibrium) -> float:
     """Displacement [mm] of the flanks by the free rotation from the search to the equilibrium."""
-    return float(equilibrium.motion[0]) * model.bodies[model.load.on].gear.base_radius
+    return float(equilibrium.motion[0]) * model.base_radius
 
 
 def _at_a_multiple(model: GearModel, stand: PairRotation) -> PairRotation:
     """The nearest stand at which searches are made."""
     on = model.load.on
-    step = 2.0 * RELOCATE * model.pair.pinion.normal_module / model.bodies[on].gear.base_radius
+    step = 2.0 * RELOCATE * model.pair.pinion.normal_module / model.base_radius
     return stand.turned(on, float(np.round(stand.beyond_nominal[on] / step)) * step - stand.beyond_nominal[on])
 
 

@@ -35,12 +35,18 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: Bools | None = No
     smooth = _first_solution(normal_part(system), [pressed, shared.smooth.traction[:, 0] > 0.0])
     if smooth is None:
         return None
+    found = SharedPosition(contact, system, smooth, shared.unsearched)
+    return found if search_holds(model, found) else None
+
+
+def search_holds(model: GearModel, found: SharedPosition) -> bool:
+    """Whether a position solved on an earlier search needs no other one: the gears have moved little since, the contact
+    keeps off the window's rim, and no flanks overlap outside it."""
+    contact, smooth = found.contact, found.smooth
     near = abs(free_shift(model, smooth)) <= STALE * model.pair.pinion.normal_module
-    inside = near and not contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0)
-    rotation = free_rotation(model, smooth)
-    if not inside or overlap_outside(contact, shared.unsearched, smooth.force, rotation) != 0.0:
-        return None
-    return SharedPosition(contact, system, smooth, shared.unsearched)
+    if not near or contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0):
+        return False
+    return overlap_outside(contact, found.unsearched, smooth.force, free_rotation(model, smooth)) == 0.0
 
 
 def _first_solution(system: CondensedSystem, starts: Sequence[Bools | None]) -> Equilibrium | None:

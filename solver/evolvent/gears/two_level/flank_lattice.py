@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Floats, Ints, different
 
 SAME = 1e-6
 """Radii or heights closer than this are one row or level [mm]."""
@@ -27,7 +27,9 @@ class FlankLattice:
     @staticmethod
     def of(points: Floats) -> FlankLattice:
         """The lattice of a flank's nodes (n, 3) [mm]. Raises ValueError where they are none."""
-        (radius, row), (height, level) = _steps(np.hypot(points[:, 0], points[:, 1])), _steps(points[:, 2])
+        (radius, row), (height, level) = (
+            different(values, SAME) for values in (np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+        )
         nodes = np.full((len(radius), len(height)), -1)
         nodes[row, level] = np.arange(len(points))
         if nodes.size != len(points) or nodes.min() < 0:
@@ -91,11 +93,3 @@ def _place(grid: Floats, values: Floats) -> tuple[Ints, Floats]:
     width = grid[interval + 1] - grid[interval]
     return interval, np.clip((values - grid[interval]) / width, 0.0, 1.0)
 
-
-def _steps(values: Floats) -> tuple[Floats, Ints]:
-    """The different values, ascending, and which each is."""
-    order = np.argsort(values)
-    new = np.concatenate([[False], np.diff(values[order]) > SAME])
-    which = np.empty(len(values), dtype=np.int64)
-    which[order] = np.cumsum(new)
-    return values[order][~np.concatenate([[False], np.diff(values[order]) <= SAME])], which

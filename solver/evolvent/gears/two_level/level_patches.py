@@ -18,7 +18,7 @@ from scipy.interpolate import BarycentricInterpolator
 from evolvent.contact.two_level.fine_surface import CoarseBody, FineSurface
 from evolvent.contact.two_level.patch_response import patch_response
 from evolvent.fem.surface import Surface
-from evolvent.gears.ring.ring_compliance import turn_by
+from evolvent.gears.ring.ring_compliance import turn
 from evolvent.gears.two_level.coarse_axis import Axis
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.strips import StripCorrection, turned
@@ -229,8 +229,8 @@ class LevelPatches:
         start, stop = np.maximum(0, low - below), np.minimum(last, high + above) + 1
         at = self._fine.place(points)
         moves = (at >= start).all(axis=1) & (at < stop).all(axis=1)
-        turn = turn_by(self._angle[low[1]] - self._normal_angle(block[0].start), 3)
-        turned_change = np.einsum("ba,ibjc,ce->iaje", turn, change[moves], turn, optimize=True)
+        R = turn(self._angle[low[1]] - self._normal_angle(block[0].start), 3)
+        turned_change = np.einsum("ba,ibjc,ce->iaje", R, change[moves], R, optimize=True)
         result = np.zeros((*(stop - start), 3, *(high - low), 3), dtype=np.float32)  # as strips are in the end
         i, j = at[moves] - start, at[loaded] - low
         result[i[:, 0, None], i[:, 1, None], :, j[:, 0], j[:, 1]] = np.moveaxis(turned_change, 1, 2)

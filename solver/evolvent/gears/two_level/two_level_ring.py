@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from evolvent.fem.surface import Surface
-from evolvent.gears.ring.ring_compliance import ChainedCompliance, MappedNodes, turn_by
+from evolvent.gears.ring.ring_compliance import ChainedCompliance, MappedNodes, turn
 from evolvent.gears.two_level.flank_window import FlankWindow, LevelWindow, ToothWindow, map_of
 from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.rough_flanks import RoughFlanks
@@ -88,7 +88,7 @@ class TwoLevelRing:
         return self.levels[-1].correction.size
 
     def _turn(self, tooth: int) -> Floats:
-        return turn_by(tooth * self.pitch, 3)
+        return turn(tooth * self.pitch, 3)
 
     @cached_property
     def _rough(self) -> RoughFlanks:

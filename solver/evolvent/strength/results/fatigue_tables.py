@@ -161,10 +161,9 @@ def _largest(
     reverses = criterion.of_history & near_reversal(pair, member, own.loads, each.friction)
     errors = _change_errors(member, each, criterion, place, first)
     at_point, at_points = _change_percents(own, first.gears[member], criterion, place)
-    point = _point(own, first.gears[member], criterion, place)
-    reverses_there = _reverses_at_point(
-        pair, member, each, first, compared_point(own, first.gears[member], criterion, place)
-    )
+    compared = compared_point(own, first.gears[member], criterion, place)
+    point = _point(own, criterion, place, compared)
+    reverses_there = _reverses_at_point(pair, member, each, first, compared)
     return replace(
         nothing, value=value, value_error=value * criterion.pressure_power * each.pressure_error,
         diameter_mm=float(diameters(pair, member, np.array([ξ]))[0]), height_mm=float(own.loads.height[k]),
@@ -178,9 +177,11 @@ def _largest(
     )
 
 
-def _point(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str) -> tuple[float, float, float]:
-    """Roll distance [mm] of the point at which coefficients are compared, value there, and its depth [µm]."""
-    point = compared_point(own, first, criterion, place)
+def _point(
+    own: FlankFatigue, criterion: Criterion, place: str, point: tuple[int, int] | None
+) -> tuple[float, float, float]:
+    """Roll distance [mm] of the point at which coefficients are compared, value there, and its depth [µm]. point: see
+    `compared_point`."""
     if point is None:
         return math.nan, math.nan, math.nan
     k = point[0]

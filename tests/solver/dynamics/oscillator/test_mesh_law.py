@@ -75,7 +75,7 @@ def test_stops_are_the_phases_of_both_sides() -> None:
 def test_stiffest_of_a_linear_side() -> None:
     """The largest of a cosine's knots and middles: exact at a knot."""
     stiffness = 3.0 + np.cos(2.0 * np.pi * PHASES)
-    assert MeshLaw(linear_side(stiffness, 0.0 * PHASES), no_side()).stiffest() == pytest.approx(4.0, abs=1e-12)
+    assert MeshLaw(linear_side(stiffness, 0.0 * PHASES), no_side()).stiffest == pytest.approx(4.0, abs=1e-12)
 
 
 def test_teeth_that_jam_are_refused() -> None:

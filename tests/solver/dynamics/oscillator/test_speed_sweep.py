@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from evidence.verification.references.time_integration import integrate
 from evolvent.dynamics.oscillator import speed_sweep
 from evolvent.dynamics.oscillator.continuation import Branch
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, linear_side, no_side
@@ -15,7 +16,6 @@ from evolvent.dynamics.oscillator.mesh_speed import speeds_to_periods
 from evolvent.dynamics.oscillator.settling import settled
 from evolvent.dynamics.oscillator.speed_sweep import OnBranch, Running, SpeedSweep, sweep_speeds
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState, SteadyState, steady_state
-from evolvent.dynamics.oscillator.time_integration import integrate
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history
 
 MASS, STIFFNESS, LOAD, TEETH = 0.77e-3, 258.6e3, 2412.0, 50

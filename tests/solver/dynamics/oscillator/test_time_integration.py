@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evidence.verification.references.time_integration import integrate
 from evolvent.dynamics.oscillator import torsional_model
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, behind, force_side, linear_side, mirrored
-from evolvent.dynamics.oscillator.time_integration import integrate
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history, period_map
 from evolvent_meshes.arrays import Floats
 

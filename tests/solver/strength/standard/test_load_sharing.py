@@ -1,12 +1,11 @@
-"""Load shares: published ones, and those of springs."""
+"""Load shares of tooth pairs against published ones."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from evolvent.strength.standard.load_sharing import pairs_in_contact, pedrero_share, stiffness_shares
-from evolvent_meshes.errors import InputError
+from evolvent.strength.standard.load_sharing import pairs_in_contact, pedrero_share
 
 RATIO = 2.1413
 """ε_α of Zhang's pair."""
@@ -26,18 +25,3 @@ def test_pedrero_shares_are_the_whole_load(ratio: float) -> None:
         assert sum(pedrero_share(float(place), ratio) for place in places) == pytest.approx(1.0, rel=1e-12)
     if ratio < 2.0:
         assert pedrero_share(0.5 * ratio, ratio) == pytest.approx(1.0, rel=1e-12)
-
-
-def test_springs_side_by_side() -> None:
-    """Stiffnesses 1 and 3: a quarter and three quarters; with the stiffer one 1 mm behind under 4 N: x + 3 (x − 1) = 4;
-    10 mm behind it bears nothing."""
-    assert stiffness_shares([1.0, 3.0], [0.0, 0.0], 4.0) == pytest.approx([1.0, 3.0], rel=1e-12)
-    assert stiffness_shares([1.0, 3.0], [0.0, 1.0], 4.0) == pytest.approx([1.75, 2.25], rel=1e-12)
-    assert stiffness_shares([1.0, 3.0], [0.0, 10.0], 4.0) == pytest.approx([4.0, 0.0], rel=1e-12)
-    assert stiffness_shares([2.0, 1.0, 1.0], [0.5, 0.0, 3.0], 3.0).sum() == pytest.approx(3.0, rel=1e-12)
-
-
-@pytest.mark.parametrize(("stiffnesses", "load"), [([], 1.0), ([1.0, 0.0], 1.0), ([1.0, 1.0], -1.0)])
-def test_loads_that_no_spring_bears_are_refused(stiffnesses: list[float], load: float) -> None:
-    with pytest.raises(InputError, match="wanted as many stiffnesses above 0"):
-        stiffness_shares(stiffnesses, [0.0] * len(stiffnesses), load)

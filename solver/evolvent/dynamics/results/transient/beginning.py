@@ -75,8 +75,6 @@ class StartErrors:
 class Beginning:
     """The first mesh periods of a motion, n positions over the rotation of the pinion since the start."""
 
-    angle: Floats
-    """(n,) rotations of the pinion since the start [rad]."""
     found: MeshPeriods
     """Motion with its first mesh periods."""
     curves: MotionCurves
@@ -87,55 +85,31 @@ class Beginning:
         """First mesh periods of a motion. inner: roll distances [mm] between which pressures are evaluated."""
         pitch, n = 2.0 * np.pi / model.pair.pinion.z, len(found.moments)
         angle = pitch / n * np.arange(1, len(found.beginning) + 1)
-        return Beginning(angle, found, MotionCurves.of(model, [each.result for each in found.beginning], inner))
-
-    @property
-    def transmission_error(self) -> Curve:
-        """Transmission error [mm] over the rotation since the start."""
-        return self._since(self.curves.transmission_error)
+        return Beginning(found, MotionCurves.of(model, [each.result for each in found.beginning], inner, angle))
 
     @property
     def mesh_force(self) -> Curve:
         """Mesh force [N; N/mm in 2D] over the rotation since the start."""
-        return Curve(self.angle, np.array([moment.mesh_force for moment in self.found.beginning]))
+        return Curve(self.curves.angle, np.array([moment.mesh_force for moment in self.found.beginning]))
 
     @property
     def largest_force(self) -> Curve:
         """Largest mesh force of the time steps up to each position [N; N/mm in 2D]."""
-        return Curve(self.angle, np.array([moment.steps.largest_force for moment in self.found.beginning]))
-
-    @property
-    def pressure(self) -> Curve:
-        """Largest fitted pressure [MPa] over the rotation since the start."""
-        return self._since(self.curves.fitted.positions)
-
-    @property
-    def hertz(self) -> Curve:
-        """Largest Hertzian pressure for the line loads [MPa] over the rotation since the start."""
-        return self._since(self.curves.hertz.positions)
-
-    @property
-    def line_loads(self) -> Curve:
-        """Largest of the pressures that depend on the line loads alone [MPa], over the rotation since the start."""
-        return self._since(self.curves.line_loads.positions)
-
-    def _since(self, curve: Curve) -> Curve:
-        """A curve over the rotation since the start, where teeth are numbered anew after each pitch."""
-        return Curve(self.angle, curve.values)
+        return Curve(self.curves.angle, np.array([moment.steps.largest_force for moment in self.found.beginning]))
 
 
-def start_errors(own: Beginning, order: int, motions: tuple[Beginning, Beginning] | None) -> StartErrors:
+def start_errors(own: Beginning, order: int, motions: Sequence[Beginning]) -> StartErrors:
     """Error bars of the first mesh periods. order: polynomial order of the finite elements. motions: those of the
-    companion, in the time steps of the case and in shorter ones; None where there are none."""
-    if motions is None:
-        nothing = np.full(len(own.angle), np.nan)
+    companion, in the time steps of the case and in shorter ones; empty where there are none."""
+    if not motions:
+        nothing = np.full(len(own.found.beginning), np.nan)
         return StartErrors(nothing, nothing, nothing, float("nan"))
     every = (own, *motions)
-    error = ComparedMotion(STIFFNESS[order], *(each.transmission_error for each in every))
+    error = ComparedMotion(STIFFNESS[order], *(each.curves.transmission_error for each in every))
     force = ComparedMotion(SHARING[order], *(each.mesh_force for each in every))
     largest = ComparedMotion(SHARING[order], *(each.largest_force for each in every))
-    peaks = ComparedMotion(SHARING[order], *(each.line_loads for each in every))
-    pressure = Compared(own.pressure, own.hertz).of_each() + peaks.of_each()
+    peaks = ComparedMotion(SHARING[order], *(each.curves.line_loads.positions for each in every))
+    pressure = Compared(own.curves.fitted.positions, own.curves.hertz.positions).of_each() + peaks.of_each()
     return StartErrors(UM * error.of_each(), force.of_each(), pressure, largest.of_figure(np.max))
 
 
@@ -149,18 +123,11 @@ def beginnings(
         if not each.case.found.beginning:
             return []
         inner = each.moving.inner_path
-        own = Beginning.of(model, each.case.found, inner)
-        motions = None if companion is None else _both(companion, number, inner)
+        own, motions = Beginning.of(model, each.case.found, inner), list[Beginning]()
+        if companion is not None and not isinstance(both := companion.motions(number), str):
+            motions = [Beginning.of(companion.model, motion, inner) for motion in both]
         found.append((own, start_errors(own, model.bodies[0].mesh.order, motions)))
     return found
-
-
-def _both(companion: MovingCompanion, number: int, inner: tuple[float, float]) -> tuple[Beginning, Beginning] | None:
-    """First mesh periods of both motions of the companion; None where one of these was not found."""
-    same, finer = companion.same[number], companion.finer[number]
-    if isinstance(same, str) or isinstance(finer, str):
-        return None
-    return Beginning.of(companion.model, same, inner), Beginning.of(companion.model, finer, inner)
 
 
 def start_rows(
@@ -170,12 +137,12 @@ def start_rows(
     width = model.width_factor
     for each, (own, bars) in zip(pressures, begun):
         case, (_, calm) = each.case, each.peaks()
-        values = own.pressure.values, bars.transmission_error_um, bars.mesh_force, bars.pressure
+        values = own.curves.fitted.positions.values, bars.transmission_error_um, bars.mesh_force, bars.pressure
         for k, (moment, peak, of_error, of_force, of_peak) in enumerate(zip(case.found.beginning, *values), 1):
             still = k % len(case.static)
             yield StartRow(
                 speed_rpm=case.speed.rpm, friction=case.friction, time_s=moment.time,
-                pinion_angle_deg=float(np.degrees(own.angle[k - 1])),
+                pinion_angle_deg=float(np.degrees(own.curves.angle[k - 1])),
                 transmission_error_um=UM * moment.result.transmission_error,
                 transmission_error_um_error=float(of_error),
                 static_transmission_error_um=UM * case.static[still].transmission_error,

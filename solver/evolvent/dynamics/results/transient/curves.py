@@ -39,18 +39,26 @@ class MotionCurves:
     """(n,) contact of each position in slices."""
     inner: tuple[float, float]
     """Roll distances [mm] between which pressures are evaluated."""
+    since_start: Floats | None = None
+    """(n,) rotations of the pinion since the start [rad] of a motion whose teeth are numbered anew after each pitch;
+    None: the positions have those of one mesh period."""
 
     @staticmethod
-    def of(model: GearModel, results: Sequence[PositionResult], inner: tuple[float, float]) -> MotionCurves:
+    def of(
+        model: GearModel, results: Sequence[PositionResult], inner: tuple[float, float],
+        since_start: Floats | None = None,
+    ) -> MotionCurves:
         """Cuts the contact of each position into slices."""
         pinion, wheel = model.bodies
         materials, flanks = (pinion.material, wheel.material), facets_of(model)
         cuts = tuple(slices(result, flanks, materials) for result in results)
-        return MotionCurves(model, tuple(results), cuts, inner)
+        return MotionCurves(model, tuple(results), cuts, inner, since_start)
 
     @property
     def angle(self) -> Floats:
         """(n,) rotation of the pinion [rad]."""
+        if self.since_start is not None:
+            return self.since_start
         return np.array([result.stand.angle for result in self.results])
 
     @property
@@ -61,12 +69,7 @@ class MotionCurves:
     @property
     def tooth_force(self) -> Curve:
         """Normal force of a tooth pair over its engagement [N; N/mm in 2D]."""
-
-        def force(k: int, tooth: int) -> float:
-            contact = self.results[k].contact
-            return float(np.sum((contact.weights * contact.pressure)[contact.tooth == tooth]))
-
-        return self._over_engagement(force)
+        return self._over_engagement(lambda k, tooth: self.results[k].contact.normal_force(tooth))
 
     @property
     def fitted(self) -> PressureCurves:

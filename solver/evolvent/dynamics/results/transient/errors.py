@@ -56,6 +56,15 @@ class MovingCompanion:
     finer: Mapping[int, MeshPeriods | str]
     """Number of a case -> its motion in steps of a quarter of those, or why there is none."""
 
+    def motions(self, number: int) -> tuple[MeshPeriods, MeshPeriods] | str:
+        """Motions of a case, in the time steps of the scene and in a quarter of those; the sentence on the one
+        that was not found."""
+        same, finer = self.same[number], self.finer[number]
+        if isinstance(same, str) or isinstance(finer, str):
+            what, why = (SAME_STEPS, same) if isinstance(same, str) else (FINER_STEPS, finer)
+            return f"no error bars, as the motion {what} was not found: {why}"
+        return same, finer
+
 
 @dataclass(frozen=True, eq=False)
 class CaseErrors:
@@ -100,13 +109,11 @@ def case_errors(
         if companion is None:
             found.append(_unknown(count))
             continue
-        same, finer = companion.same[number], companion.finer[number]
-        if isinstance(same, str) or isinstance(finer, str):
-            what, why = (SAME_STEPS, same) if isinstance(same, str) else (FINER_STEPS, finer)
-            found.append(_unknown(count, f"no error bars, as the motion {what} was not found: {why}"))
+        motions, still = companion.motions(number), companion.static[frictions.index(each.case.friction)]
+        if isinstance(motions, str):
+            found.append(_unknown(count, motions))
             continue
-        still = companion.static[frictions.index(each.case.friction)]
-        found.append(_errors(own, each, companion, (same, finer), still))
+        found.append(_errors(own, each, companion, motions, still))
     return found
 
 

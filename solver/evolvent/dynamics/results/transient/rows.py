@@ -11,7 +11,6 @@ from evolvent.dynamics.results.transient.cases import UM, CasePressures
 from evolvent.dynamics.results.transient.errors import CaseErrors
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.pressure.line_peaks import line_peak
-from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.tables.table import Table
 
 
@@ -117,7 +116,7 @@ def tooth_rows(
         for k, (moving, still) in enumerate(zip(case.results, case.static)):
             teeth = np.union1d(moving.contact.tooth, still.contact.tooth)
             for tooth in (int(tooth) for tooth in teeth):
-                forces = [width * _force(result, tooth) for result in (moving, still)]
+                forces = [width * result.contact.normal_force(tooth) for result in (moving, still)]
                 peaks = [
                     line_peak(model.pair, own.cuts[k], tooth, own.inner_path).pressure
                     for own in (each.moving, each.still)
@@ -130,9 +129,3 @@ def tooth_rows(
                     max_pressure_MPa=peaks[0], max_pressure_MPa_error=of_peak, static_max_pressure_MPa=peaks[1],
                 ))
         yield from sorted(rows, key=lambda row: row.tooth_angle_deg)
-
-
-def _force(result: PositionResult, tooth: int) -> float:
-    """Normal force of a tooth pair [N; N/mm in 2D]."""
-    contact = result.contact
-    return float(np.sum((contact.weights * contact.pressure)[contact.tooth == tooth]))

@@ -79,7 +79,7 @@ def _smooth_interval(
     """State (2,) after integration from one time [s] to another, between which e and the stiffness are smooth."""
     middle, t = 0.5 * (begin + end) / period, begin
     sides = {r: _SmoothSide.around(side, middle) for r, side in ((1, model.law.front), (-1, model.law.back))}
-    deflection = abs(model.load) / model.law.stiffest()
+    deflection = abs(model.load) / model.law.stiffest
     legs = _Legs(model, sides, period, relative, relative * deflection * np.array([1.0, model.fastest]))
     region, passed = legs.touching(t, y), 0
     while t < end:

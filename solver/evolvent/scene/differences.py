@@ -14,6 +14,7 @@ from evolvent.scene.skips import OF_OUTPUT, with_deflected_flanks
 MOST = 3
 """Largest number of keys that a message names."""
 NOT_GIVEN = "not given"
+PERCENTS = "load.percents"
 
 
 def essence(scene: Scene) -> Scene:
@@ -51,6 +52,8 @@ def differences(kept: Scene, wanted: Scene) -> str:
 def _differing(kept: Scene, wanted: Scene) -> list[str]:
     """Each differing key with both values."""
     there, here = (flat_keys(essence(scene).model_dump()) for scene in (kept, wanted))
+    if kept.load.percents and wanted.load.percents:  # of commands that solve a list of torques
+        there[PERCENTS], here[PERCENTS] = kept.load.percents, wanted.load.percents
     keys = [key for key in {**there, **here} if there.get(key) != here.get(key)]
     values = [f"{key} = {_said(here.get(key))} (kept: {_said(there.get(key))})" for key in keys]
     both = zip(GEARS, charts(kept), charts(wanted))

@@ -128,7 +128,8 @@ class Losses(Computation[list[SolvedPitches]]):
     def lines(self, out: Path) -> Iterator[str]:
         """Loss under the heaviest torque at each friction coefficient."""
         rows = LOSSES.read(out)
-        for row in (row for row in rows if row.torque_Nm == max(each.torque_Nm for each in rows)):
+        heaviest = max(row.torque_Nm for row in rows)
+        for row in (row for row in rows if row.friction and row.torque_Nm == heaviest):
             percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
             power = plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)
             factor = plus_minus(row.tooth_loss_factor, row.tooth_loss_factor_error, 4)
@@ -167,7 +168,7 @@ def _about(runs: Sequence[RunData]) -> Iterator[str]:
     for run in runs:
         under = f"under {run.scene.load.torque_Nm:.4g} N·m"
         if found := tip_edge_contact(run):
-            edges = f"{found}, {under}: the friction of edges, whose pressure is singular, is in the loss; {RELIEVE}."
+            edges = f"{found}, {under}: the friction of edges, where pressures are singular, is in the loss; {RELIEVE}."
         spaced = next((f"{under}: {each}" for each in about_spacing(run, friction_rows(run), ["loss_percent"])), spaced)
     yield from filter(None, (edges, spaced))
 

@@ -25,6 +25,8 @@ from tests.support.gear_cases import model_of, spur_scene, swept
 
 SETTINGS = "mesh.level=quick", "output.pictures=true", "sweep.positions=6"
 PERCENTS = [50.0, 100.0]
+TIPS = "No tip relief: tip edges may bear, as teeth deflect by about 8.5 µm; see tip_relief_um."
+"""Warning under the heaviest torque."""
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -40,7 +42,8 @@ def column(lines: list[dict[str, str]], name: str) -> Floats:
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Under 50 and 100 % of the torque."""
     folder = tmp_path_factory.mktemp("excitation")
-    assert quietly(Excitation.under(scene_torques(spur_scene(*SETTINGS), PERCENTS)), folder) == []
+    (tips,) = quietly(Excitation.under(scene_torques(spur_scene(*SETTINGS), PERCENTS)), folder)
+    assert tips == TIPS
     return folder
 
 
@@ -79,7 +82,8 @@ def test_error_bars_come_from_a_coarse_companion(out: Path, tmp_path: Path) -> N
     """Where they are asked for: of every position half the difference to the excitation on elements of twice the size,
     at least; the values stay, 1e-8; without the companion there are none."""
     loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS)
-    assert quietly(Excitation.under(loads), tmp_path) == []
+    tips, large = quietly(Excitation.under(loads), tmp_path)
+    assert tips == TIPS and large.startswith("Peak-to-peak values whose error bar exceeds a quarter of them: ")
     lines, plain = rows(tmp_path / "excitation.csv"), rows(out / "excitation.csv")
     angles = np.radians(column(lines[:6], "pinion_angle_deg"))
     with temporary_call() as call:
@@ -99,9 +103,9 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path) -> None:
 
     loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS[:1])
     prepare = prepared_without(companion_mesh, MeshError("too coarse"))
-    (said,) = quietly(Excitation.under(loads), tmp_path, prepare=prepare)
+    tips, said = quietly(Excitation.under(loads), tmp_path, prepare=prepare)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
-    assert json.loads((tmp_path / "excitation.json").read_text(encoding="utf-8"))["warnings"] == [said]
+    assert json.loads((tmp_path / "excitation.json").read_text(encoding="utf-8"))["warnings"] == [tips, said]
     assert np.isnan(column(rows(tmp_path / "excitation.csv"), "secant_stiffness_N_per_um_error")).all()
 
 
@@ -115,7 +119,7 @@ def test_positions_of_other_torques_are_refused(out: Path, tmp_path: Path) -> No
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
     """The call begins from the start, with a sentence."""
     loads = scene_torques(spur_scene(*SETTINGS, "sweep.positions=3"), PERCENTS[:1])
-    (said,) = quietly(Excitation.under(loads), tmp_path, resume=True)
+    said, _ = quietly(Excitation.under(loads), tmp_path, resume=True)
     assert said.startswith("--resume found nothing to continue")
 
 

@@ -36,6 +36,9 @@ SETTINGS = (
     "dynamics.profile_deviation_um=4",
 )
 
+TIPS = "No tip relief: tip edges may bear, as teeth deflect by about 17 µm; see tip_relief_um."
+"""Warning under the heaviest torque, twice the scene's."""
+
 
 def scene(*settings: str) -> Scene:
     return load_scene(ROOT / "demos/he2022_dynamics.toml", [*QUIET, *SETTINGS, *settings])
@@ -51,7 +54,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With the force surface."""
     folder, one = tmp_path_factory.mktemp("dynamics"), scene()
     assert one.dynamics is not None
-    bodies, said = quietly(Dynamics.of(one), folder)
+    tips, bodies, said = quietly(Dynamics.of(one), folder)
+    assert tips == TIPS
     assert bodies.startswith("gear bodies: their own vibration of") and "(mesh harmonic 3)" in bodies
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")
     return folder
@@ -72,7 +76,8 @@ def again(out: Path, tmp_path: Path) -> Callable[..., list[str]]:
 
 def test_warnings_are_kept(out: Path) -> None:
     """Warnings that the call has returned are in dynamics.json: once, they were in the terminal alone."""
-    bodies, said = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))["warnings"]
+    tips, bodies, said = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))["warnings"]
+    assert tips == TIPS
     assert bodies.startswith("gear bodies: their own vibration of")
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")
 
@@ -147,7 +152,7 @@ def test_rigid_bodies_have_all_inertia_at_the_bores(again: Callable[..., list[st
     """`dynamics.bodies = "rigid"`, once the default: the natural speed is √(k/m_e) 60/(2π z), the transmission error s
     itself, and a sentence says what that leaves out."""
     said = again('dynamics.bodies="rigid"', 'dynamics.mesh="tangent"', "dynamics.speeds=2")
-    assert said[0].startswith('dynamics.bodies = "rigid": all inertia is at the bores')
+    assert said[1].startswith('dynamics.bodies = "rigid": all inertia is at the bores')
     known = json.loads((tmp_path / "again/dynamics.json").read_text(encoding="utf-8"))
     natural = np.sqrt(1e6 * known["mean_stiffness_N_per_um"] / known["equivalent_mass_kg"]) * 60.0 / (2.0 * np.pi * 50)
     assert known["natural_speed_rpm"] == known["rigid_natural_speed_rpm"] == pytest.approx(natural, rel=1e-9)

@@ -1,0 +1,80 @@
+"""`evolvent losses` on He's spur pair in plane strain: input power, tooth loss factor, warnings, refusals, picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from evolvent.commands.app import main
+from evolvent.results.archive.store import ArchiveError
+from evolvent.run.kinds.losses import LOSSES, Losses, LossRow, losses_picture
+from evolvent.scene.scene import SceneError
+from tests.support.checkout import ROOT
+from tests.support.computing.quiet import quietly
+from tests.support.gear_cases import QUIET, spur_scene
+
+SMALL = (*QUIET, "mesh.level=quick", "sweep.positions=4", "contact.friction=0.3")
+
+
+def rows(folder: Path, *settings: str, percents: tuple[float, ...] = (100.0,)) -> list[LossRow]:
+    quietly(Losses.of(spur_scene(*SMALL, *settings), percents), folder)
+    return LOSSES.read(folder)
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_power_is_that_of_the_gear_with_the_torque(tmp_path: Path, gear: str) -> None:
+    """170 N·m on either gear of a pair 50/50 at 1000 r/min are 17802.4 W. On the pinion they are the input; on the
+    wheel they are what is left of it after the loss, so that the input is 1/(1 − loss) times as much."""
+    (row,) = rows(tmp_path, f"load.on={gear}")
+    held = 17802.3584
+    assert row.torque_on == gear and 2.0 < row.loss_percent < 4.0
+    delivered = row.input_at_1000_rpm_W - (row.loss_at_1000_rpm_W if gear == "wheel" else 0.0)
+    assert delivered == pytest.approx(held, rel=1e-7)
+    assert row.loss_at_1000_rpm_W == pytest.approx(0.01 * row.loss_percent * row.input_at_1000_rpm_W, rel=1e-7)
+
+
+def test_tooth_loss_factor_stands_beside_the_formula(tmp_path: Path) -> None:
+    """Loss over μ; within a tenth of Ohlendorf's 0.0986 for equal shares. Without friction it is not known."""
+    without, with_friction = rows(tmp_path, "contact.friction=[0.0,0.3]")
+    assert with_friction.tooth_loss_factor == pytest.approx(0.01 * with_friction.loss_percent / 0.3, rel=1e-7)
+    assert with_friction.tooth_loss_factor == pytest.approx(with_friction.ohlendorf_loss_factor, rel=0.1)
+    assert without.loss_percent == 0.0 and without.tooth_loss_factor != without.tooth_loss_factor
+
+
+def test_warnings_are_those_of_the_heaviest_torque(tmp_path: Path) -> None:
+    """Deflection under twice the torque, twice 8.5 µm; edges that bear, spacing, and an operating speed are said."""
+    speed = "dynamics.operating_rpm=3000", "dynamics.backlash_um=50", "sweep.positions=8"
+    said = quietly(Losses.of(spur_scene(*SMALL, *speed), (50.0, 200.0)), tmp_path)
+    assert any("tip edges may bear, as teeth deflect by about 17 µm" in each for each in said)
+    assert any(each.startswith("Tip-edge contact at ") and "under 340 N·m" in each for each in said)
+    assert any(each.startswith("under 340 N·m: Positions are 0.90° apart") for each in said)
+    assert any(each.startswith("dynamics.operating_rpm: without effect on losses.csv") for each in said)
+
+
+def test_a_picture_without_error_bars(tmp_path: Path) -> None:
+    """Drawn from rows whose errors are NaN."""
+    assert losses_picture(rows(tmp_path)).startswith(b"\x89PNG")
+
+
+def test_without_friction_there_is_no_loss() -> None:
+    """Refused before anything is computed."""
+    with pytest.raises(SceneError, match=r"contact\.friction: found no coefficient but 0; allowed: at least one above"):
+        Losses.of(spur_scene(*SMALL, "contact.friction=0")).check()
+
+
+def test_other_torques_are_named(tmp_path: Path) -> None:
+    """Resumed with another list: the list is named, not the torques that follow from it."""
+    rows(tmp_path)
+    with pytest.raises(ArchiveError, match=r"this one has load\.percents = .*50.* \(kept: .*100.*\); resume"):
+        quietly(Losses.of(spur_scene(*SMALL), (50.0, 100.0)), tmp_path, resume=True)
+
+
+def test_last_lines_have_the_loss(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Under the heaviest torque, for each coefficient above 0."""
+    words = [word for setting in SMALL for word in ("--set", setting)]
+    scene = str(ROOT / "demos/he2022.toml")
+    assert main(["losses", scene, "--out", str(tmp_path), "--percent", "50,100", *words]) == 0
+    (row,) = (row for row in LOSSES.read(tmp_path) if row.torque_Nm == 170.0)
+    wanted = f"170 N·m on the pinion, μ = 0.3: loss {row.loss_percent:.2f} % of the input, "
+    assert wanted in capfd.readouterr().out

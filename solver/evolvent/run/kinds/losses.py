@@ -20,7 +20,7 @@ from evolvent.run.kept_pitch import require_resumable
 from evolvent.run.solved_pitches import SolvedPitches, companion_of, solved_pitches
 from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
+from evolvent.scene.part_torque import listed_percents, under_percents, with_percents
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import skips
 
@@ -72,9 +72,7 @@ class Losses(Computation[list[SolvedPitches]]):
     @property
     def sized(self) -> list[Scene]:
         """The scene under each torque, the lightest first, on meshes that serve all of them."""
-        torques = [self.scene.load.torque_Nm * percent / 100.0 for percent in sorted(self.scene.load.percents)]
-        one = with_percents(self.scene, ())
-        return [under_torque(one, torque, (torques[0], torques[-1])) for torque in torques]
+        return list(under_percents(self.scene, self.scene.load.percents).values())
 
     def warnings(self) -> Iterator[str]:
         """Warnings on charts, flanks and tips."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from evolvent.check.levels_memory import levels_megabytes
 from evolvent.fem.parallel.machine import machine_megabytes
@@ -218,8 +218,7 @@ def _remedy(scene: Scene, needed: MemoryEstimate, processes: int, there: float) 
             return f"take {words} ({gigabytes(wanted)})"
     for doublings in range(1, MOST_DOUBLINGS):
         torque = scene.load.torque_Nm * 2.0**doublings
-        load = scene.load.model_copy(update={"torque_Nm": torque})
-        other = _meshed(scene, level="quick", elements_per_contact_width=None).model_copy(update={"load": load})
+        other = scene.changed("mesh", level="quick", elements_per_contact_width=None).changed("load", torque_Nm=torque)
         if needed(other, processes) <= there:
             return f"no mesh fits: the contact is too narrow. From about {torque:.4g} N·m on --level quick does"
     return "no mesh fits: take narrower gears, or a machine with more memory"
@@ -231,8 +230,8 @@ def _lightest_that_fits(scene: Scene, needed: MemoryEstimate, processes: int, th
     lightest, heaviest = scene.load.mesh_torques_Nm or (0.0, 0.0)
     while 0.0 < (lightest := 2.0 * lightest) <= heaviest:
         served = lightest, heaviest
-        loads = (scene.load.model_copy(update={"torque_Nm": each, "mesh_torques_Nm": served}) for each in served)
-        if all(needed(scene.model_copy(update={"load": load}), processes) <= there for load in loads):
+        scenes = (scene.changed("load", torque_Nm=each, mesh_torques_Nm=served) for each in served)
+        if all(needed(each, processes) <= there for each in scenes):
             return lightest
     return None
 
@@ -247,15 +246,10 @@ def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:
         yield f"{' and '.join(long_ways)} out of exact.parts (--exact)", scene
     if (count := scene.mesh.elements_per_contact_width) is None:
         for level in LEVELS[LEVELS.index(scene.mesh.level) + 1 :]:
-            yield f"--level {level}", _meshed(scene, level=level)
-        scene, prefix, count = _meshed(scene, level="quick"), "--level quick ", ELEMENTS_PER_WIDTH["quick"]
+            yield f"--level {level}", scene.changed("mesh", level=level)
+        scene, prefix, count = scene.changed("mesh", level="quick"), "--level quick ", ELEMENTS_PER_WIDTH["quick"]
     else:
         prefix = ""
     for tenths in range(math.ceil(10 * count) - 1, round(10 * FEWEST_ELEMENTS) - 1, -1):
         words = f"{prefix}--set mesh.elements_per_contact_width={tenths / 10:g}"
-        yield words, _meshed(scene, elements_per_contact_width=tenths / 10)
-
-
-def _meshed(scene: Scene, **settings: Any) -> Scene:
-    """The scene with other keys of [mesh]."""
-    return scene.model_copy(update={"mesh": scene.mesh.model_copy(update=settings)})
+        yield words, scene.changed("mesh", elements_per_contact_width=tenths / 10)

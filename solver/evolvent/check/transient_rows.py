@@ -102,11 +102,9 @@ def planned_steps(scene: Scene, section: TransientSection) -> list[PlannedSteps]
 def natural_frequency(scene: Scene, section: TransientSection) -> float:
     """Natural frequency f_n [Hz] of the gears on c_γα of ISO 6336-1, with the inertia that swings: of both gears, or of
     the one with the torque."""
-    problem = gear_problem(scene)
-    pair, force = problem.pair, problem.torque / problem.base_radius
-    moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
-    iso = method_b(pair, _swinging_mass(scene, section, problem), force, Accuracy(), moduli)
-    return MeshSpeed(iso.resonance_speed, pair.pinion.z).mesh_frequency
+    planned, mass = scene.planned_vibration(), _swinging_mass(scene, section, gear_problem(scene))
+    iso = method_b(planned.pair, mass, planned.force, Accuracy(), planned.moduli)
+    return MeshSpeed(iso.resonance_speed, planned.pair.pinion.z).mesh_frequency
 
 
 def _swinging_mass(scene: Scene, section: TransientSection, problem: GearProblem) -> float:

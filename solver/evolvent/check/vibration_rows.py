@@ -27,10 +27,9 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Row]:
         added_inertia(moment, polar_moment(gear, section.density_kg_m3))
         for moment, gear in zip(settings.inertias, problem.pair.gears)
     ]
-    force = problem.torque / problem.base_radius
-    moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
-    iso = method_b(problem.pair, mass, force, Accuracy(), moduli)
-    natural, bars = scene.planned_vibration().natural_speed, wanted_output(scene).error_bars
+    planned, bars = scene.planned_vibration(), wanted_output(scene).error_bars
+    time = shown_time(speeds_time(planned.natural_speed, section, bars))
+    iso = method_b(problem.pair, mass, planned.force, Accuracy(), planned.moduli)
     swept = ["by default", *(f"{speed:g}" for speed in section.speed_rpm or ())]
     named = unnamed_backlash(problem.pair, section.backlash_um) is None
     return [
@@ -46,7 +45,7 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Row]:
         Row("positions × torques of the excitation", "", "", (f"{count} × {len(section.torque_percents)}",)),
         Row("speeds, up and down", "", "", (str(section.speeds),)),
         *([Row(f"  {WITH_OTHERS}", "", "", (str(SWEEPS * section.speeds),))] if bars else []),
-        Row("processor time of the speeds, roughly", "", "", (shown_time(speeds_time(natural, section, bars)),)),
+        Row("processor time of the speeds, roughly", "", "", (time,)),
     ]
 
 

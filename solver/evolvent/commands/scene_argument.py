@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from evolvent.scene.schema.errors import SceneError
-
 if TYPE_CHECKING:
     from mpi4py import MPI
 
@@ -33,23 +31,22 @@ def loaded_scene(
     from evolvent.scene.scene import load_scene
     from evolvent.scene.schema.dependence import effectless_keys
 
-    result: Scene | SceneError | None = None
-    old: list[str] = []
-    if comm is None or comm.rank == 0:
-        try:
-            overrides = with_level(settings, level)
-            overrides += [f"exact.parts={json.dumps(exact)}"] if exact else []
-            result = load_scene(path, overrides, old.append)
-        except SceneError as error:
-            result = SceneError(error.problems, error.source)  # causes and tracebacks may not be fit to be sent
-    result = result if comm is None else comm.bcast(result)
-    assert result is not None
-    if isinstance(result, SceneError):
-        raise result
+    overrides, old = with_level(settings, level), list[str]()
+    overrides += [f"exact.parts={json.dumps(exact)}"] if exact else []
+
+    def loaded() -> Scene:
+        return load_scene(path, overrides, old.append)
+
+    if comm is None:
+        scene = loaded()
+    else:
+        from evolvent.fem.parallel.ranks import on_first
+
+        scene = on_first(comm, loaded)
     warn(old)
     if warns and (comm is None or comm.rank == 0):
-        warn(effectless_keys(result))
-    return result
+        warn(effectless_keys(scene))
+    return scene
 
 
 def with_level(settings: Sequence[str] | None, level: str | None) -> list[str]:

@@ -45,10 +45,8 @@ class Options:
     """The scene's file, which is never overwritten."""
     prepare: Preparer = prepare_model
     """Prepares gears, its own or those that several calls share."""
-    label: str = ""
-    """Name in front of the warnings that are printed."""
-    silent: bool = False
-    """Warnings are in the log, and returned, but not printed."""
+    label: str | None = ""
+    """Name in front of the warnings that are printed; None: they are in the log, and returned, but not printed."""
 
 
 DEFAULT = Options()
@@ -174,8 +172,7 @@ def opened_call(
     begun = time.perf_counter()
     earlier = on_first(comm, lambda: read_cost(folder) if options.resume else Cost())
     shown = Progress(hidden=options.quiet or comm.rank > 0)
-    printed = None if options.silent else options.label
-    with logged(folder, comm, options.resume, printed) as log, shown as progress:
+    with logged(folder, comm, options.resume, options.label) as log, shown as progress:
         yield Call(command, replaced, comm, folder, log, progress, options, earlier, begun)
 
 

@@ -27,6 +27,16 @@ class Attempt(Generic[T]):
     """Wall time of the solution [s]."""
 
 
+@dataclass(frozen=True)
+class WithCompanion(Generic[T]):
+    """A solution, and that of its coarse companion."""
+
+    fine: T
+    """Solution on the meshes of the scene."""
+    coarse: Attempt[T]
+    """Solution on the meshes of the error bars."""
+
+
 def attempted(solve: Callable[[], T]) -> Attempt[T]:
     """Solves a companion. Collective: `solve` fails on all ranks together.
 

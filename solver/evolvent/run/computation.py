@@ -33,6 +33,8 @@ class Outputs:
     """Names of all other files but stored results."""
     stored: tuple[str, ...] = ()
     """Patterns of the stored results that `--resume` goes on from; the first one is there before all others."""
+    lines: Callable[[Path], Iterable[str]] = lambda out: ()
+    """Key figures in words, from the tables below OUT."""
 
     @property
     def results(self) -> tuple[str, ...]:
@@ -114,7 +116,7 @@ class Computation(ABC, Generic[Solved]):
 
     def lines(self, out: Path) -> Iterable[str]:
         """Key figures of a finished computation in words, to be printed at its end."""
-        return ()
+        return self.outputs.lines(out)
 
     @property
     def files(self) -> Sequence[str]:

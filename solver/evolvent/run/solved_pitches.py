@@ -10,20 +10,15 @@ from evolvent.results.archive.run_cost import Timings
 from evolvent.results.error_bars.estimation import Companion, estimated_errors
 from evolvent.results.run_data import RunData
 from evolvent.run.call import Call
-from evolvent.run.companion import Attempt
+from evolvent.run.companion import Attempt, WithCompanion
 from evolvent.run.kept_pitch import KeptPitch, Meshes, kept_pitch
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import wanted_output
 
 
 @dataclass(frozen=True)
-class SolvedPitches:
+class SolvedPitches(WithCompanion[KeptPitch]):
     """The pitch of a scene, and that of its coarse companion."""
-
-    fine: KeptPitch
-    """Pitch on the meshes of the scene."""
-    coarse: Attempt[KeptPitch]
-    """Pitch on the meshes of the error bars."""
 
     @property
     def timings(self) -> Timings:

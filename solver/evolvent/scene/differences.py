@@ -21,9 +21,8 @@ def essence(scene: Scene) -> Scene:
     """The scene without the parts that its results do not depend on: title, output, the paths of flank charts, and the
     other torques of a list."""
     exact = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in OF_OUTPUT))
-    load = scene.load.model_copy(update={"percents": ()})
-    bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
-    return scene.model_copy(update={"title": "", "output": OutputSection(), "exact": exact, "load": load, **bare})
+    bare = scene.changed("load", percents=()).changed("pinion", flank_csv=None).changed("wheel", flank_csv=None)
+    return bare.model_copy(update={"title": "", "output": OutputSection(), "exact": exact})
 
 
 def identity(scene: Scene) -> list[Any]:

@@ -18,7 +18,15 @@ def listed_percents(
 
 def with_percents(scene: Scene, percents: Sequence[float]) -> Scene:
     """The scene with torques of a list, in percent of its own."""
-    return scene.model_copy(update={"load": scene.load.model_copy(update={"percents": tuple(percents)})})
+    return scene.changed("load", percents=tuple(percents))
+
+
+def under_percents(scene: Scene, percents: Sequence[float]) -> dict[float, Scene]:
+    """Part of its torque in percent, ascending -> the scene under it, on meshes that serve all of these torques. Raises
+    SceneError where one of them is refused."""
+    one, torques = with_percents(scene, ()), {each: scene.load.torque_Nm * each / 100.0 for each in sorted(percents)}
+    served = min(torques.values()), max(torques.values())
+    return {percent: under_torque(one, torque, served) for percent, torque in torques.items()}
 
 
 def under_torque(scene: Scene, torque: float, mesh_torques: tuple[float, float] | None = None) -> Scene:

@@ -97,7 +97,7 @@ class Scene(SceneSection):
 
     @model_validator(mode="after")
     def _contact_has_a_width(self) -> Self:
-        unit = self.model_copy(update={"load": self.load.model_copy(update={"torque_Nm": 1.0})}).hertz_estimate()
+        unit = self.changed("load", torque_Nm=1.0).hertz_estimate()
         half_width = float(unit.half_width(0.0)) * math.sqrt(self.load.torque_Nm)
         if not half_width >= NARROWEST_CONTACT:
             least = (NARROWEST_CONTACT / float(unit.half_width(0.0))) ** 2

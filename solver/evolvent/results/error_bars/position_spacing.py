@@ -67,7 +67,7 @@ def spacing_errors(run: RunData, index: int) -> FigureErrors:
     scattered, excess = SCATTERS * scatter(whole.max_pressure), _excess(run, whole)
     return FigureErrors(
         max_pressure_MPa=_larger(largest, excess, scattered),
-        mean_pressure_MPa=_larger(_apart(_mean(whole.mean_pressure), mean), _mean_bends(whole)),
+        mean_pressure_MPa=_larger(_apart(whole.whole_mean, mean), _mean_bends(whole)),
         transmission_error_peak_to_peak_um=_larger(
             _apart(float(np.ptp(error)), [float(np.ptp(error[kept])) for kept in halves]), missed_peaks(error)
         ),
@@ -192,8 +192,7 @@ def _larger(*estimates: float) -> float:
     return float(np.fmax.reduce(estimates))
 
 
-def _mean(values: Floats, weights: Floats | None = None) -> float:
+def _mean(values: Floats, weights: Floats) -> float:
     """Weighted mean of the known values; NaN where none is known."""
     known = np.isfinite(values)
-    of_known = None if weights is None else weights[known]
-    return float(np.average(values[known], weights=of_known)) if known.any() else float("nan")
+    return float(np.average(values[known], weights=weights[known])) if known.any() else float("nan")

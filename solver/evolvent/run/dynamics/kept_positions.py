@@ -84,7 +84,5 @@ def another(path: Path) -> str:
 def identity(loads: SceneTorques) -> str:
     """SHA-256 of all that the excitation of gears under some torques depends on: neither friction nor the use of the
     excitation."""
-    scene = loads.scene
-    smooth = scene.contact.model_copy(update={"friction": (0.0,)})
-    bare = scene.model_copy(update={"dynamics": None, "contact": smooth})
+    bare = loads.scene.changed("contact", friction=(0.0,)).model_copy(update={"dynamics": None})
     return hashlib.sha256(f"{fingerprint(bare)} {loads.torques}".encode()).hexdigest()

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import ClassVar
 
 from evolvent.dynamics.figures.all import EXCITATION_PICTURE, VIBRATION_PICTURES
@@ -49,7 +48,8 @@ class Dynamics(Computation[SolvedDynamics]):
     name: ClassVar[str] = "dynamics"
     command: ClassVar[str] = "dynamics"
     outputs: ClassVar[Outputs] = Outputs(
-        tuple(table.name for table in TABLES), (EXCITATION_PICTURE, *VIBRATION_PICTURES), stored=KEPT
+        tuple(table.name for table in TABLES), (EXCITATION_PICTURE, *VIBRATION_PICTURES), stored=KEPT,
+        lines=summary_lines,
     )
 
     @property
@@ -96,10 +96,6 @@ class Dynamics(Computation[SolvedDynamics]):
         ]
         timings = Timings(error_bars=solved.excitation.seconds)
         return Results(self._loads.scene, tables, [*excited, *vibration.warnings], timings=timings)
-
-    def lines(self, out: Path) -> Iterable[str]:
-        """Key figures of dynamics.json."""
-        return summary_lines(out)
 
     @cached_property
     def _loads(self) -> SceneTorques:

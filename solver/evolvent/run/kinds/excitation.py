@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar, Self
 
 from evolvent.dynamics.figures.all import EXCITATION_PICTURE
@@ -29,7 +28,7 @@ class Excitation(Computation[SolvedExcitation]):
     name: ClassVar[str] = "excitation"
     command: ClassVar[str] = "excitation"
     outputs: ClassVar[Outputs] = Outputs(
-        tuple(table.name for table in EXCITATION_TABLES), (EXCITATION_PICTURE,), stored=KEPT
+        tuple(table.name for table in EXCITATION_TABLES), (EXCITATION_PICTURE,), stored=KEPT, lines=excitation_lines
     )
 
     @classmethod
@@ -60,7 +59,3 @@ class Excitation(Computation[SolvedExcitation]):
         """Tables of the excitation."""
         timings = Timings(error_bars=solved.seconds)
         return Results(self.scene, solved.tables(self.loads, self.warnings()), solved.warnings, timings=timings)
-
-    def lines(self, out: Path) -> Iterable[str]:
-        """Key figures of harmonics.csv."""
-        return excitation_lines(out)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar
 
 from evolvent.gears.pressure.contact_cells import coarse_contact
@@ -38,7 +37,7 @@ class Fatigue(Computation[SolvedPitches]):
     name: ClassVar[str] = "fatigue"
     command: ClassVar[str] = "fatigue"
     outputs: ClassVar[Outputs] = Outputs(
-        tuple(table.name for table in TABLES), (FATIGUE_PICTURE,), stored=STORED
+        tuple(table.name for table in TABLES), (FATIGUE_PICTURE,), stored=STORED, lines=fatigue_lines
     )
 
     def solve(self, call: Call) -> SolvedPitches:
@@ -63,10 +62,6 @@ class Fatigue(Computation[SolvedPitches]):
         said += [run.errors.missing] if wanted_output(self.scene).error_bars and run.errors.missing else []
         said += [*_about(run), *(sentence for pair in zip(facts, found) for sentence in warnings_of(*pair))]
         return Results(solved.fine.scene, tables, said, timings=solved.timings)
-
-    def lines(self, out: Path) -> Iterable[str]:
-        """Key figures of fatigue.csv."""
-        return fatigue_lines(out)
 
 
 def _about(run: RunData) -> Iterator[str]:

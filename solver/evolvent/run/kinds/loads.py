@@ -16,7 +16,7 @@ from evolvent.run.folder_checks import check_folder
 from evolvent.run.kept_pitch import require_resumable
 from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
+from evolvent.scene.part_torque import listed_percents, under_percents, with_percents
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
 
@@ -41,11 +41,9 @@ class Loads(Computation[None]):
         if scene.wear is not None:
             found, allowed = "a load list of gears that wear", "a scene without [wear]"
             raise SceneError([InputProblem("wear", found, allowed, "delete the section, or take `evolvent run`")])
-        listed, one = listed_percents(scene, percents), with_percents(scene, ())
-        torques = {percent: scene.load.torque_Nm * percent / 100.0 for percent in sorted(listed, reverse=True)}
-        served = min(torques.values()), max(torques.values())
-        runs = {_folder(percent): Run(under_torque(one, torque, served)) for percent, torque in torques.items()}
-        return cls(with_percents(scene, listed), runs)
+        listed = listed_percents(scene, percents)
+        scenes = reversed(under_percents(scene, listed).items())
+        return cls(with_percents(scene, listed), {_folder(percent): Run(each) for percent, each in scenes})
 
     @property
     def sized(self) -> list[Scene]:

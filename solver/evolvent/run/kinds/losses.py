@@ -25,7 +25,7 @@ from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.kept_pitch import require_resumable
 from evolvent.run.solved_pitches import SolvedPitches, companion_of, solved_pitches
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
+from evolvent.scene.part_torque import listed_percents, under_percents, with_percents
 from evolvent.scene.scene import Scene, SceneError
 from evolvent.scene.schema.errors import InputProblem
 from evolvent.scene.skips import skips
@@ -77,7 +77,8 @@ class Losses(Computation[list[SolvedPitches]]):
     name: ClassVar[str] = "losses"
     command: ClassVar[str] = "losses"
     outputs: ClassVar[Outputs] = Outputs(
-        (LOSSES.name,), (LOSSES_PICTURE,), stored=(f"results/{PART.format(0)}state.npz", "results/*torque_*.npz")
+        (LOSSES.name,), (LOSSES_PICTURE,), stored=(f"results/{PART.format(0)}state.npz", "results/*torque_*.npz"),
+        lines=lambda out: loss_lines(out),
     )
 
     @classmethod
@@ -89,9 +90,7 @@ class Losses(Computation[list[SolvedPitches]]):
     @property
     def sized(self) -> list[Scene]:
         """The scene under each torque, the lightest first, on meshes that serve all of them."""
-        torques = [self.scene.load.torque_Nm * percent / 100.0 for percent in sorted(self.scene.load.percents)]
-        one = with_percents(self.scene, ())
-        return [under_torque(one, torque, (torques[0], torques[-1])) for torque in torques]
+        return list(under_percents(self.scene, self.scene.load.percents).values())
 
     def check(self) -> None:
         """Raises SceneError for a scene without friction."""
@@ -125,20 +124,6 @@ class Losses(Computation[list[SolvedPitches]]):
         said = [*[ON_DEFLECTED] * mended, *reasons, *_about(runs)]
         return Results(self.scene, [LOSSES.of(rows)], said)
 
-    def lines(self, out: Path) -> Iterator[str]:
-        """Loss under the heaviest torque at each friction coefficient."""
-        rows = LOSSES.read(out)
-        heaviest = max(row.torque_Nm for row in rows)
-        for row in (row for row in rows if row.friction and row.torque_Nm == heaviest):
-            percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
-            power = plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)
-            factor = plus_minus(row.tooth_loss_factor, row.tooth_loss_factor_error, 4)
-            beside = "" if math.isnan(row.ohlendorf_loss_factor) else f" (Ohlendorf {row.ohlendorf_loss_factor:.4f})"
-            yield (
-                f"{row.torque_Nm:.4g} N·m on the {row.torque_on}, μ = {row.friction:g}: loss {percent} % of the input, "
-                f"{power} W at {SPEED:g} r/min; tooth loss factor {factor}{beside}"
-            )
-
     def _check_parts(self, call: Call, parts: Mapping[str, Scene]) -> None:
         """Raises ArchiveError, before anything is removed, where stored positions belong to another scene. On rank 0
         alone. parts: of the archive, with the scene under each torque."""
@@ -171,6 +156,21 @@ def _about(runs: Sequence[RunData]) -> Iterator[str]:
             edges = f"{found}, {under}: the friction of edges, where pressures are singular, is in the loss; {RELIEVE}."
         spaced = next((f"{under}: {each}" for each in about_spacing(run, friction_rows(run), ["loss_percent"])), spaced)
     yield from filter(None, (edges, spaced))
+
+
+def loss_lines(out: Path) -> Iterator[str]:
+    """Loss under the heaviest torque at each friction coefficient."""
+    rows = LOSSES.read(out)
+    heaviest = max(row.torque_Nm for row in rows)
+    for row in (row for row in rows if row.friction and row.torque_Nm == heaviest):
+        percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
+        power = plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)
+        factor = plus_minus(row.tooth_loss_factor, row.tooth_loss_factor_error, 4)
+        beside = "" if math.isnan(row.ohlendorf_loss_factor) else f" (Ohlendorf {row.ohlendorf_loss_factor:.4f})"
+        yield (
+            f"{row.torque_Nm:.4g} N·m on the {row.torque_on}, μ = {row.friction:g}: loss {percent} % of the input, "
+            f"{power} W at {SPEED:g} r/min; tooth loss factor {factor}{beside}"
+        )
 
 
 def losses_picture(rows: Sequence[LossRow]) -> bytes:

@@ -134,8 +134,7 @@ class Run(Computation[SolvedRun]):
         from evolvent.results.figures.all import pictures  # pyvista and matplotlib take a second to import
 
         run = read_run(out)
-        wanted = run.scene.output.model_copy(update={"pictures": True})
-        drawn = pictures(replace(run, scene=run.scene.model_copy(update={"output": wanted})))
+        drawn = pictures(replace(run, scene=run.scene.changed("output", pictures=True)))
         return [*drawn, *from_tables(self.outputs.pictures, out)]
 
     def lines(self, out: Path) -> Iterable[str]:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from typing import ClassVar
 
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.tables.run_warnings import RELIEVE
 from evolvent.run.call import Call
-from evolvent.run.companion import Attempt
+from evolvent.run.companion import WithCompanion
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.kept_pitch import STORED
 from evolvent.run.strength.pitch_roots import PitchRoots, pitch_roots, root_meshes
@@ -37,15 +36,8 @@ from evolvent.strength.strain_gauges import Gauge, gauge_places
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
-
-@dataclass(frozen=True)
-class SolvedRoots:
-    """Root stresses on the meshes of the results, and on those of the error bars."""
-
-    fine: PitchRoots
-    """Roots on the meshes of the results."""
-    coarse: Attempt[PitchRoots]
-    """Roots on the coarse meshes, at the same positions."""
+SolvedRoots = WithCompanion[PitchRoots]
+"""Root stresses on the meshes of the results and, at the same positions, on those of the error bars."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +47,8 @@ class Strength(Computation[SolvedRoots]):
     name: ClassVar[str] = "strength"
     command: ClassVar[str] = "strength"
     outputs: ClassVar[Outputs] = Outputs(
-        (STRENGTH.name, ROOT_STRESS.name, GAUGES.name), (ROOT_STRESS_PICTURE,), stored=(*STORED, "results/angle_*.npz")
+        (STRENGTH.name, ROOT_STRESS.name, GAUGES.name), (ROOT_STRESS_PICTURE,),
+        stored=(*STORED, "results/angle_*.npz"), lines=summary_lines,
     )
 
     def check(self) -> None:
@@ -79,9 +72,8 @@ class Strength(Computation[SolvedRoots]):
         """Roots on both kinds of meshes, see `Computation.solve`."""
         own, coarse = root_meshes(self.scene)
         fine = pitch_roots(call, self.scene, own)
-        return SolvedRoots(
-            fine, call.companion(self.scene, lambda: pitch_roots(call, fine.scene, coarse, fine.angles))
-        )
+        again = call.companion(self.scene, lambda: pitch_roots(call, fine.scene, coarse, fine.angles))
+        return SolvedRoots(fine, again)
 
     def results(self, call: Call, solved: SolvedRoots) -> Results:
         """Tables of stresses, roots and gauges."""
@@ -98,10 +90,6 @@ class Strength(Computation[SolvedRoots]):
         )
         timings = replace(solved.fine.timings, error_bars=solved.coarse.seconds)
         return Results(scene, tables, list(self._warnings(solved)), timings=timings)
-
-    def lines(self, out: Path) -> Iterable[str]:
-        """Key figures of strength.csv."""
-        return summary_lines(out)
 
     def _warnings(self, solved: SolvedRoots) -> Iterator[str]:
         """Warnings on the results."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -62,7 +61,8 @@ class Transient(Computation[SolvedCases]):
     name: ClassVar[str] = "transient"
     command: ClassVar[str] = "transient"
     outputs: ClassVar[Outputs] = Outputs(
-        tuple(table.name for table in TABLES), TRANSIENT_PICTURES, (f"pictures/{ANIMATION}",), (*STORED, CASES)
+        tuple(table.name for table in TABLES), TRANSIENT_PICTURES, (f"pictures/{ANIMATION}",), (*STORED, CASES),
+        summary_lines,
     )
 
     def check(self) -> None:
@@ -116,10 +116,6 @@ class Transient(Computation[SolvedCases]):
         animated = [self._animation(pressures, facts)] if wanted_output(self.scene).animation else []
         timings = replace(own.static.timings, error_bars=solved.companion.seconds)
         return Results(own.static.scene, tables, said, animated, timings)
-
-    def lines(self, out: Path) -> Iterable[str]:
-        """Key figures of transient.json."""
-        return summary_lines(out)
 
     def _animation(self, pressures: list[CasePressures], facts: list[TransientFacts]) -> Picture:
         """Contact lines over time, of the case with the largest mesh force."""

@@ -29,8 +29,7 @@ def line_name(task: SceneTask) -> str:
     their own."""
     if task.compute != "excitation":
         return task.name
-    pair = task.scene.pair.model_copy(update={"misalignment_um": 0.0})
-    return task.scene.model_copy(update={"pair": pair}).model_dump_json()
+    return task.scene.changed("pair", misalignment_um=0.0).model_dump_json()
 
 
 def solve_line(tasks: Sequence[SceneTask], gears: SharedGears) -> list[SceneRecord]:

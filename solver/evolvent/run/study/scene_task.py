@@ -117,4 +117,4 @@ def _computed(task: SceneTask, prepare: Preparer) -> list[str]:
         return run_check(task.scene, task.folder)
     what = computation_of(task)
     resume = bool(begun_results(what, task.folder))
-    return compute(what, task.folder, Options(resume, not resume, quiet=True, prepare=prepare, silent=True))
+    return compute(what, task.folder, Options(resume, not resume, quiet=True, prepare=prepare, label=None))

@@ -61,11 +61,15 @@ class Study:
     """Figures that the table gathers."""
 
     @property
+    def names(self) -> str:
+        """SHA-256 of the scenes' names in their order."""
+        return hashlib.sha256(" ".join(each.name for each in self.scenes).encode()).hexdigest()
+
+    @property
     def content(self) -> str:
-        """Identity of the study's table, as JSON: title, computation, and a SHA-256 of its scenes' names in their
-        order."""
-        names = hashlib.sha256(" ".join(each.name for each in self.scenes).encode()).hexdigest()
-        values = {"title": self.file.title, "compute": self.file.compute, "scenes": len(self.scenes), "names": names}
+        """Identity of the study's table, as JSON: title, computation, number and `names` of its scenes."""
+        known = {"title": self.file.title, "compute": self.file.compute, "scenes": len(self.scenes)}
+        values = {**known, "names": self.names}
         return json.dumps(values, ensure_ascii=False, indent=1) + "\n"
 
 
@@ -119,7 +123,7 @@ def _require_no_other(folder: RunFolder) -> None:
 def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
     """Raises FolderError where the folder has the table of another study, unless that is to be replaced."""
     path = folder.out / STUDY
-    if path.exists() and _kept_names(path) != _names(study.content) and not overwrite:
+    if path.exists() and _kept_names(path) != study.names and not overwrite:
         raise FolderError(
             f"{folder.out}: found the table of another study, or of other values ({STUDY}); allowed: a folder "
             "without, or the same study; remedy: --overwrite replaces table and pictures, and computes no scene again "
@@ -127,17 +131,10 @@ def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
         )
 
 
-def _names(content: str) -> object:
-    """Hash of the scenes' names in a study's content; None where it cannot be read."""
-    with contextlib.suppress(ValueError, TypeError, KeyError, RecursionError):
-        return json.loads(content)["names"]
-    return None
-
-
 def _kept_names(path: Path) -> object:
-    """Hash of the scenes' names in a study's file; None where it cannot be read."""
-    with contextlib.suppress(UnreadableText):
-        return _names(read_text(path, "JSON", 1))
+    """`Study.names` in a study's file; None where it cannot be read."""
+    with contextlib.suppress(UnreadableText, ValueError, TypeError, KeyError, RecursionError):
+        return json.loads(read_text(path, "JSON", 1))["names"]
     return None
 
 

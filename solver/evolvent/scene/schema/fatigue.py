@@ -60,7 +60,7 @@ class FatigueSection(SceneSection):
     @classmethod
     def _different(cls, exponents: tuple[float, ...]) -> tuple[float, ...]:
         if len(set(exponents)) < len(exponents):
-            raise validation_error(InputProblem("exponents", shown(exponents), EXPONENTS, "name each once"))
+            raise validation_error(InputProblem("", shown(exponents), EXPONENTS, "name each once"))
         return exponents
 
     @model_validator(mode="after")

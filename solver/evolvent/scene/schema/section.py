@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
@@ -45,6 +45,10 @@ class SceneSection(BaseModel):
     """The page that lists its keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    def changed(self, section: str, **values: Any) -> Self:
+        """This with other values of keys in one of its sections. They are not checked."""
+        return self.model_copy(update={section: getattr(self, section).model_copy(update=values)})
 
 
 def listed(value: Any) -> Any:

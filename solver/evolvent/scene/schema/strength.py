@@ -100,5 +100,5 @@ class StrengthSection(SceneSection):
     @classmethod
     def _different(cls, editions: tuple[Edition, ...]) -> tuple[Edition, ...]:
         if len(set(editions)) < len(editions):
-            raise validation_error(InputProblem("editions", shown(editions), EDITIONS, "name each once"))
+            raise validation_error(InputProblem("", shown(editions), EDITIONS, "name each once"))
         return editions

@@ -33,7 +33,6 @@ from evolvent.results.tables.table import SCENE_TITLE
 from evolvent.run.dynamics.transient.checks import transient_section
 from evolvent.scene.differences import differences
 from evolvent.scene.scene import Scene, SceneError, kept_scene
-from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.gears.pair import GearPair
 
 CASES = "results/transient_*.npz"
@@ -63,7 +62,8 @@ class KeptCases:
         section = transient_section(scene)
         names = [f"{speed:.17g}rpm_{i}" for speed in section.speeds_rpm for i in range(len(scene.contact.friction))]
         highest = (max(section.speeds_rpm),) if section.modes_per_harmonic is None else ()
-        cases = Store(RunFolder(out), _fingerprint(scene, section, highest), partial(another, scene))
+        identity = fingerprint(scene.changed("transient", speeds_rpm=highest))
+        cases = Store(RunFolder(out), identity, partial(another, scene))
         return KeptCases(cases, tuple(names), pair, kind)
 
     def read(self) -> dict[int, MeshPeriods]:
@@ -112,11 +112,6 @@ def another(scene: Scene, path: Path) -> str:
         "scene and the settings that it was called with, to which lower speeds may be added, with "
         "transient.modes_per_harmonic higher ones, too; --out names another folder, --overwrite computes anew"
     )
-
-
-def _fingerprint(scene: Scene, section: TransientSection, speeds: tuple[float, ...]) -> str:
-    """Fingerprint of the scene with these speeds."""
-    return fingerprint(scene.model_copy(update={"transient": section.model_copy(update={"speeds_rpm": speeds})}))
 
 
 def _steps(accepted: float, rejected: float, *others: float) -> StepsTaken:

@@ -82,5 +82,4 @@ def _serving(scene: Scene, torques: tuple[float, float]) -> Scene:
     """The scene on meshes for a range of torques [N·m], unless it gives such a range itself."""
     if torques == (scene.load.torque_Nm, scene.load.torque_Nm) or scene.load.mesh_torques_Nm is not None:
         return scene
-    load = scene.load.model_copy(update={"mesh_torques_Nm": torques})
-    return scene.model_copy(update={"load": load})
+    return scene.changed("load", mesh_torques_Nm=torques)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -18,9 +18,11 @@ from evolvent.dynamics.small_system import GearShapes, pair_system
 from evolvent.gears.problem.gear_inertia import added_inertia, equivalent_mass
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.scene.schema.dynamics import DAMPING, DAMPING_WANTED, USUAL_DAMPING
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.input_checks import instance, is_number, number, one_of, refuse, vector
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
 RIGID = 'dynamics.bodies = "rigid"'
@@ -63,6 +65,23 @@ class DriveSettings:
     """Static shapes of the bodies of pinion and wheel, on their whole width; None: the bodies are rigid, with all
     inertia at the bores."""
 
+    def __post_init__(self) -> None:
+        """Raises InputError for settings that no pair has."""
+        unit = "1 kg·m² is 1000 t·mm²"
+        for inertia in vector("inertias", self.inertias, (2,), "two numbers above 0, in t·mm²", unit):
+            number("inertias", inertia, "two numbers above 0, in t·mm²", unit, lambda J: J > 0.0)
+        check_damping(self.damping_ratio, self.damping_in_separation)
+        number("backlash", self.backlash, "a number from 0 on, in mm", "50 µm are 0.05", lambda j: j >= 0.0)
+        wanted = "a number from 0 to 1"
+        number("ground_damping_ratio", self.ground_damping_ratio, wanted, "0 for none", lambda D: 0.0 <= D <= 1.0)
+        series = self.series_stiffness
+        if series != math.inf and not (is_number(series) and series > 0.0):
+            refuse("series_stiffness", "a number above 0, in N/mm", series, "leave it out for none")
+        one_of("mesh", self.mesh, get_args(MeshModel))
+        if self.bodies is not None and not _are_shapes(self.bodies):
+            remedy = "leave it out for rigid bodies; with_elastic_bodies(settings, problem, density) adds them"
+            refuse("bodies", "None or the shapes of both gears", self.bodies, remedy)
+
     @property
     def bodies_named(self) -> Literal["elastic", "rigid"]:
         """As `dynamics.bodies` of a scene."""
@@ -78,6 +97,17 @@ class DriveSettings:
             added_inertia(moment, float(gear.mass[0, 0])) for moment, gear in zip(self.inertias, self.bodies)
         )
         return pinion, wheel
+
+
+def check_damping(ratio: float, in_separation: bool) -> None:
+    """Raises InputError for a damping of the mesh that a scene may not have either."""
+    number("damping_ratio", ratio, DAMPING_WANTED, USUAL_DAMPING, lambda D: DAMPING[0] <= D <= DAMPING[1])
+    instance("damping_in_separation", in_separation, bool, "give True or False")
+
+
+def _are_shapes(bodies: object) -> bool:
+    """Whether these are the static shapes of two gears."""
+    return isinstance(bodies, tuple) and len(bodies) == 2 and all(isinstance(each, GearShapes) for each in bodies)
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,8 +38,8 @@ class GivenMeshVibration(SweptVibration):
     """Mean stiffness of the mesh [N/mm]."""
 
     def plot(self, path: Path | str) -> Path:
-        """Draws amplitude, dynamic factor and time out of contact over the speed to a PNG file, and returns its path.
-        Raises InputError for another ending, WriteError."""
+        """Draws amplitude, dynamic factor and time out of contact over the speed to a PNG file, and returns its path;
+        creates missing folders. Raises InputError for another ending, WriteError."""
         from evolvent.dynamics.figures.response import given_mesh_picture
         from evolvent.results.solution.user_files import save_picture
 

@@ -80,8 +80,8 @@ class GearExcitation:
         return self.mesh.secant
 
     def save(self, path: Path | str) -> Path:
-        """Writes the curves to a CSV file with the columns of excitation.csv, and returns its path. Raises InputError
-        for another ending, WriteError."""
+        """Writes the curves to a CSV file with the columns of excitation.csv, and returns its path; creates missing
+        folders. Raises InputError for another ending, WriteError."""
         from evolvent.dynamics.results.tables import excitation_rows
         from evolvent.results.solution.user_files import save_rows
 
@@ -89,7 +89,7 @@ class GearExcitation:
 
     def plot(self, path: Path | str) -> Path:
         """Draws the curves, the force over the deflection and the peak-to-peak transmission error over the torque to a
-        PNG file, and returns its path. Raises InputError for another ending, WriteError."""
+        PNG file, and returns its path; creates missing folders. Raises InputError for another ending, WriteError."""
         from evolvent.dynamics.figures.excitation import excitation_picture
         from evolvent.dynamics.results.curves import NO_COMPANION
         from evolvent.dynamics.results.design_load import excitation_facts

@@ -37,8 +37,8 @@ class PairVibration(SweptVibration):
     """Mass, stiffness, natural speed, folds and jumps; the keys of dynamics.json. Error bars are NaN."""
 
     def plot(self, path: Path | str) -> Path:
-        """Draws amplitude, dynamic factor and time out of contact over the speed to a PNG file, and returns its path.
-        Raises InputError for another ending, WriteError."""
+        """Draws amplitude, dynamic factor and time out of contact over the speed to a PNG file, and returns its path;
+        creates missing folders. Raises InputError for another ending, WriteError."""
         from evolvent.dynamics.figures.response import response_picture
         from evolvent.results.solution.user_files import save_picture
 
@@ -60,6 +60,7 @@ def vibration(
 
     Raises InputError, Jammed where the backlash has no room for unloaded errors, TooSoftBodies, NoSteadyState.
     """
+    instance("accuracy", accuracy, Accuracy, "write accuracy=Accuracy(f_pb, f_fα), in µm")
     values = checked_speeds(speeds)
     pair = _drive(excitation, torque, settings)
     swept = sweep_at(pair, values)

@@ -67,14 +67,15 @@ class RootStress:
         return [row for load in self.loads for row in strength_rows(load, self.by_friction, editions, tolerance_class)]
 
     def save(self, path: Path | str) -> Path:
-        """Writes `curves` to a CSV file, and returns its path. Raises InputError for another ending, WriteError."""
+        """Writes `curves` to a CSV file, and returns its path; creates missing folders. Raises InputError for another
+        ending, WriteError."""
         from evolvent.results.solution.user_files import save_rows
 
         return save_rows(path, self.curves)
 
     def plot(self, path: Path | str) -> Path:
-        """Draws `curves` beside the formulas to a PNG file, and returns its path. Raises InputError for another ending
-        and for rims that the standard does not cover, WriteError."""
+        """Draws `curves` beside the formulas to a PNG file, and returns its path; creates missing folders. Raises
+        InputError for another ending and for rims that the standard does not cover, WriteError."""
         from evolvent.results.solution.user_files import save_picture
         from evolvent.strength.results.root_stress_picture import root_stress_picture
 

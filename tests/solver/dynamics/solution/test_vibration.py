@@ -111,6 +111,11 @@ def test_results_save_and_draw_themselves(excitation: GearExcitation, tmp_path: 
             assert image.format == "PNG" and image.width > 1000
         with pytest.raises(InputError, match=r"path: wanted the name of a file that ends in \.png"):
             result.plot(tmp_path / "picture.pdf")
+    for path in (None, "", "."):
+        with pytest.raises(InputError, match=r'path: wanted the name of a file .*; write "name\.csv"'):
+            found.save(path)  # type: ignore[arg-type]  # refused
+    with pytest.raises(InputError, match="accuracy: wanted an Accuracy"):
+        vibration(excitation, TORQUE, SPEEDS, RIGID, (5, 6))  # type: ignore[arg-type]  # refused
     with pytest.raises(InputError, match=r"ends in \.csv, found .*; write .*table\.csv"):
         found.save(tmp_path / "table.npz")
 

@@ -63,7 +63,7 @@ def with_elastic_bodies(settings: DriveSettings, problem: GearProblem, density: 
     Raises InputError, also for an inertia below that of a body, before anything is meshed, and as `static_shapes`.
     """
     instance("settings", settings, DriveSettings, "write DriveSettings(inertias, damping_ratio, backlash)")
-    instance("problem", problem, GearProblem, "give what condense(problem) has")
+    instance("problem", problem, GearProblem, "give the problem that was condensed")
     check_density(density)
     refuse_light_gears(problem.pair, settings.inertias, density, RIGID)
     width = problem.pair.face_width if problem.is_plane else 1.0

@@ -10,7 +10,7 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile
-from evolvent_meshes.input_checks import Words, number, refuse
+from evolvent_meshes.input_checks import Words, instance, number, refuse
 
 POINTS = 2001
 """Number of points of fillet and involute each: the moment of inertia is then right to 1e-9."""
@@ -26,6 +26,7 @@ def polar_moment(gear: GearParameters, density: float) -> float:
 
     Raises InputError.
     """
+    instance("gear", gear, GearParameters, "give pair.pinion or pair.wheel")
     check_density(density)
     moment = _disc_moment(gear, _section(gear), gear.bore_diameter)
     if (web := gear.thin_web) is not None:
@@ -96,7 +97,7 @@ def refuse_less_than_the_body(member: Member, inertia: float, body: float, remed
             f"dynamics.{member.label}_inertia_kg_m2",
             f"at least that of the gear's body, {1e-3 * body:.4g} kg m², which gives way with all of its mass",
             Words(f"{1e-3 * inertia:.4g} kg m²"),
-            f"delete the key for the body's own, enlarge the bore, or take {remedy}",
+            f"delete the key for the body's own (in Python: polar_moment), enlarge the bore, or take {remedy}",
         )
 
 

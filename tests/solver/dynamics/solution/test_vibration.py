@@ -14,6 +14,7 @@ from evolvent.dynamics import (
     Accuracy,
     DriveSettings,
     GearExcitation,
+    geometric_backlash,
     mesh_excitation,
     natural_speed,
     polar_moment,
@@ -32,6 +33,7 @@ from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
 from tests.support.recorded_tables import assert_same_rows, columns_of, tables_of
+from tests.support.running.hub_and_rim import settings
 
 SCENE = ROOT / "demos/he2022_dynamics.toml"
 SETTINGS = (
@@ -128,6 +130,8 @@ def test_results_save_and_draw_themselves(excitation: GearExcitation, tmp_path: 
     ({"positions": 2}, "positions: wanted a whole number from 3 on"),
     ({"flanks": (FlankChart(np.linspace(140.0, 156.0, 9), np.zeros(1), np.zeros((9, 1))), None)},
      "flanks: wanted the charts that the gears were condensed with, found pinion: one for a gear as designed"),
+    ({"flanks": None}, "flanks: wanted two of FlankChart or None"),
+    ({"flanks": (None,)}, "flanks: wanted two of FlankChart or None"),
 ])
 def test_an_excitation_that_cannot_be_is_refused(gears: GearModel, wrong: dict[str, Any], words: str) -> None:
     """InputError names argument, value and remedy."""
@@ -180,6 +184,18 @@ def test_settings_that_cannot_be_are_refused(wrong: dict[str, Any], words: str) 
     """InputError names field, value and remedy."""
     with pytest.raises(InputError, match=words):
         replace(RIGID, **wrong)
+
+
+def test_inertia_taken_from_elastic_bodies_is_refused() -> None:
+    """Half of the inertia that the bodies have, given once their shapes are known: the mass matrix would be indefinite.
+    Right: refused; with a pair in place of a gear, likewise."""
+    elastic = settings()
+    with pytest.raises(InputError, match="inertias: wanted of the wheel at least that of its elastic body"):
+        replace(elastic, inertias=(elastic.inertias[0], 0.5 * elastic.inertias[1]))
+    for wrong in (lambda: polar_moment(PROBLEM.pair, STEEL.density),  # type: ignore[arg-type]  # refused
+                  lambda: geometric_backlash(PROBLEM.pair.pinion)):  # type: ignore[arg-type]  # refused
+        with pytest.raises(InputError, match=r"(gear|pair): wanted a Gear"):
+            wrong()
 
 
 @pytest.mark.parametrize("density", [7850.0, 7.85, 0.0])

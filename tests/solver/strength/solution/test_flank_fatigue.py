@@ -147,6 +147,8 @@ def test_pitches_that_cannot_be_are_refused(gears: GearModel) -> None:
     for places in (None, 0.0, ["x"], [np.nan]):
         with pytest.raises(InputError, match="places: wanted finite numbers, in mm"):
             passing_stress(places, 0.1, PEAK, HALF)  # type: ignore[arg-type]  # refused
+    with pytest.raises(InputError, match=r"poissons_ratio: wanted a number from 0 to 0\.5"):
+        passing_stress([0.0], 0.1, PEAK, HALF, poissons_ratio=0.7)
     with pytest.raises(InputError, match="depth: wanted a number from 0 on"):
         passing_stress([0.0], -0.1, PEAK, HALF)
 

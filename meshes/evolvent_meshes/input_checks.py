@@ -101,8 +101,9 @@ def vector(what: str, value: Any, lengths: tuple[int, ...], wanted: str, remedy:
     """The value as a tuple of finite numbers, of one of these lengths. Raises InputError."""
     if not _is_flat(value):
         refuse(what, wanted, value, remedy)
-    if len(value) not in lengths or not all(is_number(x) for x in value):
+    if len(value) not in lengths:
         refuse(what, wanted, value, remedy)
+    _refuse_no_number(what, wanted, value, remedy)
     refuse_huge(what, value)
     return tuple(float(x) for x in value)
 
@@ -114,10 +115,18 @@ def array(what: str, value: Any, shapes: tuple[tuple[int, ...], ...], remedy: st
         entries = np.array(value, dtype=object)
     except ValueError:  # rows of different lengths
         refuse(what, wanted, value, remedy)
-    if entries.shape not in shapes or not all(is_number(x) for x in entries.ravel()):
+    if entries.shape not in shapes:
         refuse(what, wanted, value, remedy)
+    _refuse_no_number(what, wanted, entries.ravel(), remedy)
     refuse_huge(what, value)
     return entries.astype(np.float64)
+
+
+def _refuse_no_number(what: str, wanted: str, values: Iterable[Any], remedy: str) -> None:
+    """Raises InputError that shows the first of some values that is no finite number."""
+    for value in values:
+        if not is_number(value):
+            refuse(what, wanted, Words(f"{shown(value)} in it"), remedy)
 
 
 def text(what: str, value: Any, remedy: str) -> str:

@@ -40,7 +40,7 @@ def lazy_names(package: str) -> Door:
         setattr(this, name, value)
         return value
 
-    return sorted(modules), find, lambda: sorted({*vars(this), *modules})
+    return sorted(modules), find, lambda: sorted(modules)
 
 
 def _modules(source: str) -> dict[str, str]:

@@ -27,6 +27,8 @@ NAN = float("nan")
         (lambda: vector("v", "xy", (2,), "two numbers", "give them"), "found 'xy'"),
         (lambda: array("a", [[1.0], [2.0, 3.0]], ((2, 2),), "give a matrix"), "wanted finite numbers of shape (2, 2)"),
         (lambda: array("a", np.zeros((9, 9)), ((2, 2),), "give one"), "found an array of shape (9, 9) and type"),
+        (lambda: array("a", np.full(9, NAN), ((9,),), "give one"), "of shape (9,), found nan in it; give one"),
+        (lambda: vector("v", [1.0] * 8 + [NAN], (9,), "nine numbers", "give them"), "found nan in it; give them"),
         (lambda: text("name", "", "give a name"), "name: wanted a name, found ''; give a name"),
         (lambda: members("loads", 3, (int,), "(1, 2)"), "loads: wanted a tuple of int, found 3; write (1, 2)"),
         (lambda: members("loads", [1, "x"], (int,), "(1, 2)"), "found 'x' in it"),

@@ -102,7 +102,7 @@ def _steady(scene: Scene, model: GearModel, static: list[PositionResult]) -> tup
     problem, positions = gear_problem(scene), scene.sweep.positions
     turning = MeshSpeed(speed, model.pair.pinion.z)
     sampled = turning.mesh_frequency * positions
-    modes = resolved_modes(problem, model, dynamics.density_kg_m3, sampled, section.modes_per_harmonic)
+    modes = resolved_modes(problem, model, dynamics.density, sampled, section.modes_per_harmonic)
     settings = drive_settings(problem.pair, dynamics)
     pair = loaded_as_static(driven_pair(model, modes, settings, static, section.mode_damping_ratio, False), static)
     contacts = KeptContacts(pair, positions, model.bodies[0].d if any(frictions) else 1)

@@ -135,7 +135,7 @@ def _bore_of(scene: Scene) -> float:
     """Bore [mm] of a solid pinion that has the given inertia."""
     assert scene.dynamics is not None and scene.dynamics.pinion_inertia_kg_m2 is not None
     gear, given = scene.gear_pair().pinion, 1e3 * scene.dynamics.pinion_inertia_kg_m2
-    density = scene.dynamics.density_kg_m3
+    density = scene.dynamics.density
 
     def excess(bore: float) -> float:
         return polar_moment(replace(gear, bore_diameter=bore), density) - given

@@ -63,7 +63,7 @@ def _bodies(scene: Scene) -> SmallSystem:
     """Both gears with the scene's inertia."""
     section, problem = scene.dynamics, gear_problem(scene)
     assert section is not None
-    settings = with_elastic_bodies(drive_settings(problem.pair, section), problem, section.density_kg_m3)
+    settings = with_elastic_bodies(drive_settings(problem.pair, section), problem, section.density)
     assert settings.bodies is not None
     return pair_system(*(gear.with_inertia(own) for gear, own in zip(settings.bodies, settings.inertias)))
 

@@ -30,8 +30,8 @@ FROM, TO = 1.0 / 6.0, 1.6
 """Speeds over the natural one, likewise."""
 PAIR_STIFFNESS = 14e3
 """Of a tooth pair of steel, per mm of face width [N/mm²]: ISO 6336-1:2019, clause 9.3.1."""
-DENSITY = 7850.0
-"""[kg/m³]."""
+DENSITY = 7.85e-9
+"""[t/mm³]."""
 MARGIN = 0.05
 """By which a spline through errors may fall below them, over their swing."""
 OUTSIDE = 30.0

@@ -49,7 +49,7 @@ def shown_time(seconds: float) -> str:
 
 def natural_modes(scene: Scene, section: TransientSection) -> tuple[float, ...]:
     """Number of natural modes of pinion and wheel; to a third where all modes up to a frequency are wanted."""
-    problem, density = gear_problem(scene), (scene.dynamics or DynamicsSection()).density_kg_m3
+    problem, density = gear_problem(scene), (scene.dynamics or DynamicsSection()).density
     if section.modes_per_harmonic is not None:
         return tuple(float(section.modes_per_harmonic * gear.z) for gear in problem.pair.gears)
     fastest = MeshSpeed(max(section.speeds_rpm), problem.pair.pinion.z)

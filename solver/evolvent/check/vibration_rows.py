@@ -24,7 +24,7 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Row]:
     settings = drive_settings(problem.pair, section)
     mass = equivalent_mass(problem.pair, settings.inertias)
     added = [
-        added_inertia(moment, polar_moment(gear, section.density_kg_m3))
+        added_inertia(moment, polar_moment(gear, section.density))
         for moment, gear in zip(settings.inertias, problem.pair.gears)
     ]
     planned, bars = scene.planned_vibration(), wanted_output(scene).error_bars

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 
-from evolvent.gears.problem.gear_inertia import TONNE_PER_MM3
 from evolvent_meshes.gears.gear import GearParameters
 
 
@@ -17,9 +16,9 @@ def expected_modes(
 ) -> float:
     """Number of modes up to a frequency [Hz] of a gear in plane strain or in space; each of a pair counts.
 
-    elastic: Young's modulus [MPa] and Poisson's ratio. density: [kg/m³].
+    elastic: Young's modulus [MPa] and Poisson's ratio. density: [t/mm³].
     """
-    shear, pressure = (2.0 * math.pi * highest / c for c in _wave_speeds(*elastic, TONNE_PER_MM3 * density))
+    shear, pressure = (2.0 * math.pi * highest / c for c in _wave_speeds(*elastic, density))
     middle, depth = 0.5 * (gear.tip_diameter + gear.root_diameter), 0.5 * (gear.tip_diameter - gear.root_diameter)
     area, rim = 0.25 * math.pi * (middle**2 - gear.bore_diameter**2), math.pi * middle + 2.0 * gear.z * depth
     if plane:

@@ -42,7 +42,7 @@ def check_bodies(scene: Scene) -> None:
     """Raises InputError where a gear's inertia is below that of its body, all of which moves where it is elastic."""
     section, pair = scene.dynamics or DynamicsSection(), scene.gear_pair()
     if section.bodies == "elastic":
-        refuse_light_gears(pair, moments_of_inertia(pair, section), section.density_kg_m3, RIGID)
+        refuse_light_gears(pair, moments_of_inertia(pair, section), section.density, RIGID)
 
 
 def refusals(scene: Scene) -> list[str]:

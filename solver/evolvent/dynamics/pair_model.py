@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeGuard, get_args
 
 import numpy as np
 
@@ -18,13 +18,18 @@ from evolvent.dynamics.small_system import GearShapes, pair_system
 from evolvent.gears.problem.gear_inertia import added_inertia, equivalent_mass
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.scene.schema.dynamics import DAMPING, DAMPING_WANTED, USUAL_DAMPING
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.input_checks import instance, is_number, number, one_of, refuse, vector
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
 RIGID = 'dynamics.bodies = "rigid"'
 """Setting of rigid bodies, for remedies in messages."""
+MESHED = 0.95
+"""Inertia over that of a meshed body, from which on it may be all of it: coarse meshes have up to 2 % more."""
 NANOMETRE = 1e-6
 """Accuracy of unloaded errors [mm]; no backlash is asked for less."""
 OVERLAP = 0.01
@@ -36,7 +41,7 @@ class TooSoftBodies(ResultError):
     """Gear bodies whose static shapes are more compliant than the whole mesh."""
 
     def __init__(self, what: str) -> None:
-        super().__init__(f"{what}; take {RIGID}, or evolvent transient")
+        super().__init__(f"{what}; take rigid bodies ({RIGID}), or evolvent transient")
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,33 @@ class DriveSettings:
     """Static shapes of the bodies of pinion and wheel, on their whole width; None: the bodies are rigid, with all
     inertia at the bores."""
 
+    def __post_init__(self) -> None:
+        """Raises InputError for settings that no pair has."""
+        unit = "1 kg·m² is 1000 t·mm²"
+        for inertia in vector("inertias", self.inertias, (2,), "two numbers above 0, in t·mm²", unit):
+            number("inertias", inertia, "two numbers above 0, in t·mm²", unit, lambda J: J > 0.0)
+        check_damping(self.damping_ratio, self.damping_in_separation)
+        number("backlash", self.backlash, "a number from 0 on, in mm", "50 µm are 0.05", lambda j: j >= 0.0)
+        wanted = "a number from 0 to 1"
+        number("ground_damping_ratio", self.ground_damping_ratio, wanted, "0 for none", lambda D: 0.0 <= D <= 1.0)
+        series = self.series_stiffness
+        if series != math.inf and not (is_number(series) and series > 0.0):
+            refuse("series_stiffness", "a number above 0, in N/mm", series, "leave it out for none")
+        one_of("mesh", self.mesh, get_args(MeshModel))
+        if self.bodies is not None:
+            self._check_bodies(self.bodies)
+
+    def _check_bodies(self, bodies: object) -> None:
+        """Raises InputError unless these are static shapes of two gears, whose inertia is at least that of the bodies
+        but for the accuracy of their meshes: without it, motions have a negative kinetic energy."""
+        if not _are_shapes(bodies):
+            remedy = "leave it out for rigid bodies; with_elastic_bodies(settings, problem, density) adds them"
+            refuse("bodies", "None or the shapes of both gears", bodies, remedy)
+        for member, inertia, shapes in zip(Member, self.inertias, bodies):
+            if inertia < MESHED * (own := float(shapes.mass[0, 0])):
+                wanted = f"of the {member.label} at least that of its elastic body, {own:.4g} t·mm²"
+                refuse("inertias", wanted, inertia, "take the body's own, or leave out bodies for rigid ones")
+
     @property
     def bodies_named(self) -> Literal["elastic", "rigid"]:
         """As `dynamics.bodies` of a scene."""
@@ -78,6 +110,17 @@ class DriveSettings:
             added_inertia(moment, float(gear.mass[0, 0])) for moment, gear in zip(self.inertias, self.bodies)
         )
         return pinion, wheel
+
+
+def check_damping(ratio: float, in_separation: bool) -> None:
+    """Raises InputError for a damping of the mesh that a scene may not have either."""
+    number("damping_ratio", ratio, DAMPING_WANTED, USUAL_DAMPING, lambda D: DAMPING[0] <= D <= DAMPING[1])
+    instance("damping_in_separation", in_separation, bool, "give True or False")
+
+
+def _are_shapes(bodies: object) -> TypeGuard[tuple[GearShapes, GearShapes]]:
+    """Whether these are the static shapes of two gears."""
+    return isinstance(bodies, tuple) and len(bodies) == 2 and all(isinstance(each, GearShapes) for each in bodies)
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +223,11 @@ def lacking_room(problem: GearProblem, positions: int, settings: DriveSettings) 
 
 def geometric_backlash(pair: GearPair) -> float:
     """j_bt = (2π r_w1/z_1 − s_w1 − s_w2) cos α_wt [mm]: along the line of action in the transverse section, from the
-    tooth thicknesses on the working pitch circles (ISO 21771:2007, 5.6); 0 where rounding leaves less."""
+    tooth thicknesses on the working pitch circles (ISO 21771:2007, 5.6); 0 where rounding leaves less.
+
+    Raises InputError.
+    """
+    instance("pair", pair, GearPair, "write GearPair(pinion, wheel, centre_distance)")
     gap = np.pi * pair.working_pitch_diameters[0] / pair.pinion.z
     for gear, diameter in zip(pair.gears, pair.working_pitch_diameters):
         gap -= diameter * gear.half_angle(diameter)

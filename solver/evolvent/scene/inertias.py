@@ -14,7 +14,7 @@ def moments_of_inertia(pair: GearPair, section: DynamicsSection) -> tuple[float,
     """Moments of inertia of pinion and wheel [t·mm²]: those that the section gives, else those of the gear bodies."""
     given = section.pinion_inertia_kg_m2, section.wheel_inertia_kg_m2
     pinion, wheel = (
-        polar_moment(gear, section.density_kg_m3) if value is None else KG_M2 * value
+        polar_moment(gear, section.density) if value is None else KG_M2 * value
         for gear, value in zip(pair.gears, given)
     )
     return pinion, wheel

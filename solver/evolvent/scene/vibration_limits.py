@@ -88,7 +88,7 @@ class PlannedVibration:
         given = section.pinion_inertia_kg_m2, section.wheel_inertia_kg_m2
         for name, gear, value in zip(("pinion", "wheel"), self.pair.gears, given):
             if value is not None:
-                teeth, disc = (moment(gear, section.density_kg_m3) / KG_M2 for moment in (teeth_moment, solid_moment))
+                teeth, disc = (moment(gear, section.density) / KG_M2 for moment in (teeth_moment, solid_moment))
                 yield f"dynamics.{name}_inertia_kg_m2", value, teeth, disc
 
 

@@ -59,7 +59,7 @@ def test_moments_of_inertia_of_teeth_and_of_a_disc() -> None:
     """Teeth are what a body has beyond a disc of the root diameter; a solid disc of the tip diameter has more than the
     body with its bore: exact, π/32 ϱ b d⁴."""
     gear = he().gear_pair().pinion
-    body, teeth, disc = (moment(gear, 7850.0) for moment in (polar_moment, teeth_moment, solid_moment))
+    body, teeth, disc = (moment(gear, 7.85e-9) for moment in (polar_moment, teeth_moment, solid_moment))
 
     def solid(diameter: float) -> float:
         return 7.85e-9 * gear.face_width * math.pi * diameter**4 / 32.0

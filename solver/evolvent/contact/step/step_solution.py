@@ -46,7 +46,8 @@ class Solution:
         count, known = len(self.condensed), [each.assembled.body for each in self.condensed]
         index = body_number(known, body, "solution") if is_body(body) else -1
         if not 0 <= index < count:
-            refuse("solution", f"a body index below {count}", body, "bodies are counted from 0")
+            wanted = f"a body of the problem, or its number from 0 to {count - 1}"
+            refuse("solution", wanted, body, "names are not searched: give the Body itself")
         return index
 
     def body(self, body: int | Body) -> CondensedBody:

@@ -16,7 +16,7 @@ from evolvent.results.drawing.style import INK, foot, png, sheet, styled, torque
 from evolvent_meshes.arrays import Floats
 
 BARS = (
-    "Bands: estimated error by the mesh, see excitation.csv; bars: of the peak-to-peak value, by the spacing of the "
+    "Bands: estimated error by the mesh; bars: of the peak-to-peak value, by the spacing of the "
     "positions, too."
 )
 
@@ -89,7 +89,7 @@ def excitation_figure(
     grid[0, 1].legend(grid[0, 1].lines, [f"{torque:.4g}" for torque in torques], title="N·m", **beside)
     sizes = [row for row in harmonics if row.harmonic == 1 and row.quantity in (UNLOADED, LOADED)]
     _draw_harris(grid[1, 1], sizes, colours)
-    said = "Secant stiffness: excitation.csv; harmonics.csv."
+    said = "The secant stiffness and the mesh harmonics are in the tables."
     foot(figure, *([said, BARS] if np.isfinite(pitch.error[1]).all() else [said]))
     return figure
 

@@ -26,7 +26,7 @@ MOST_FOLDS = 8
 """Speeds at which the branch turns back that the foot names."""
 BODIES = "#d9a441"
 """Colour of speeds near the bodies' own vibration."""
-NO_ISO = f"No {ISO}: it wants dynamics.base_pitch_deviation_um and dynamics.profile_deviation_um."
+NO_ISO = f"No {ISO}: it wants the deviations f_pb and f_fα of the gears."
 BAND = (
     "Its error: estimated, of running up, by the mesh and by the spacing of positions; large beside a jump that moves "
     "with them."
@@ -155,7 +155,7 @@ def _limit(axes: Axes, rows: Sequence[ResponseRow], branch: Sequence[BranchRow])
         axes.set_ylim(top=min(axes.get_ylim()[1], 1.1 * max(run, highest)))
         return ""
     axes.set_ylim(top=1.2 * run)
-    return f" Steady states that no run comes to go on to {highest:.3g} µm: branch.csv."
+    return f" Steady states that no run comes to go on to {highest:.3g} µm."
 
 
 def _draw_errors(axes: Axes, rows: Sequence[ResponseRow], name: str) -> None:
@@ -194,7 +194,7 @@ def _folds(known: DriveSummary, speeds: Floats) -> str:
     if not inside:
         return "No steady state turns back at these speeds."
     if len(inside) > MOST_FOLDS:
-        return f"Steady states turn back at {len(inside)} of these speeds: folds_rpm of dynamics.json."
+        return f"Steady states turn back at {len(inside)} of these speeds (folds_rpm)."
     return f"Steady states turn back at {', '.join(inside)} r/min."
 
 
@@ -221,7 +221,7 @@ def _draw_surface(axes: Axes, known: DriveSummary, rows: Sequence[ResponseRow]) 
     axes.axhline(heaviest, color=INK, lw=0.9, ls="-.", zorder=1)
     return [
         f"Dash-dotted: {heaviest:.3g}, the heaviest torque of the force surface; beyond it the mesh force goes on "
-        "straight (dynamics.torque_percents)."
+        "straight. Heavier torques of the excitation reach further."
     ]
 
 

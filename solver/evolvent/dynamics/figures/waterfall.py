@@ -34,7 +34,7 @@ def waterfall_figure(known: DriveSummary, rows: Sequence[SpectrumRow]) -> Figure
     """Spectrum of the mesh force while the pair runs up: frequency over speed, coloured by the amplitude."""
     lines = [row for row in rows if row.way == "up"]
     speeds = np.array(list(dict.fromkeys(row.speed_rpm for row in lines)))
-    natural, load = 1e-3 * known.mesh_frequency_Hz, known.static_force_N
+    natural, load = 1e-3 * known.natural_frequency_Hz, known.static_force_N
     mesh = natural * speeds / known.natural_speed_rpm
     top = min(HIGHEST_ORDER * float(mesh[-1]), max(BEYOND_NATURAL * natural, 2.2 * float(mesh[-1])))
     figure = sheet("Spectrum of the mesh force while running up", _strongest(lines, load), (11.0, 6.6))

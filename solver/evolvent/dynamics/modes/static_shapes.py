@@ -24,10 +24,11 @@ from evolvent.dynamics.small_system import GearShapes
 from evolvent.fem.surface import surface_of
 from evolvent.gears.condensed_gear import sector_body
 from evolvent.gears.kinematics import spin
-from evolvent.gears.problem.gear_inertia import TONNE_PER_MM3, refuse_light_gears
+from evolvent.gears.problem.gear_inertia import check_density, refuse_light_gears
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.input_checks import instance
 
 SHAPES = 3
 
@@ -57,13 +58,16 @@ def static_shapes(problem: GearProblem, member: Member, density: float) -> GearS
 
 
 def with_elastic_bodies(settings: DriveSettings, problem: GearProblem, density: float) -> DriveSettings:
-    """Settings of a vibration with elastic gear bodies. density: [kg/m³].
+    """Settings of a vibration with elastic gear bodies. density: [t/mm³].
 
-    Raises InputError for an inertia below that of a body, before anything is meshed, and as `static_shapes`.
+    Raises InputError, also for an inertia below that of a body, before anything is meshed, and as `static_shapes`.
     """
+    instance("settings", settings, DriveSettings, "write DriveSettings(inertias, damping_ratio, backlash)")
+    instance("problem", problem, GearProblem, "give the problem that was condensed")
+    check_density(density)
     refuse_light_gears(problem.pair, settings.inertias, density, RIGID)
     width = problem.pair.face_width if problem.is_plane else 1.0
-    pinion, wheel = (static_shapes(problem, member, TONNE_PER_MM3 * density).scaled(width) for member in Member)
+    pinion, wheel = (static_shapes(problem, member, density).scaled(width) for member in Member)
     return replace(settings, bodies=(pinion, wheel))
 
 

@@ -151,12 +151,12 @@ class DriveSummary:
     """Model of the mesh force, as dynamics.mesh."""
     damping_ratio: float
     """Damping ratio of the mesh, as in the scene."""
-    damped_apart: bool
-    """Whether the damping of the mesh acts in free flight, dynamics.damping_in_separation."""
+    damping_in_separation: bool
+    """Whether the damping of the mesh acts in free flight, too."""
     ground_damping_ratio: float
     """Damping ratio of the shafts against the ground, as in the scene."""
-    mesh_frequency_Hz: float
-    """Mesh frequency at the natural speed."""
+    natural_frequency_Hz: float
+    """Natural frequency, at which the mesh frequency is at the natural speed."""
     folds_rpm: tuple[float, ...]
     """Speeds at which the branch of steady states turns back, each once, in the order along the branch."""
     jumps_up_rpm: tuple[float, ...]
@@ -196,7 +196,7 @@ class DriveSummary:
         """Speed of the pinion at which the first mesh harmonic has `body_frequency_Hz`; infinite for rigid bodies."""
         if self.body_frequency_Hz is None:
             return math.inf
-        return self.body_frequency_Hz / self.mesh_frequency_Hz * self.natural_speed_rpm
+        return self.body_frequency_Hz / self.natural_frequency_Hz * self.natural_speed_rpm
 
 
 RESPONSE, BRANCH = Table("response.csv", ResponseRow), Table("branch.csv", BranchRow)
@@ -274,8 +274,8 @@ def summary(
         moving_stiffness_N_per_um=1e-3 * drive.moving_stiffness,
         body_frequency_Hz=drive.body_frequency if settings.bodies is not None else None,
         static_force_N=drive.model.load, damping_N_s_per_mm=drive.model.damping, backlash_um=UM * settings.backlash,
-        mesh=settings.mesh, damping_ratio=settings.damping_ratio, damped_apart=settings.damping_in_separation,
-        ground_damping_ratio=settings.ground_damping_ratio, mesh_frequency_Hz=natural.mesh_frequency,
+        mesh=settings.mesh, damping_ratio=settings.damping_ratio, damping_in_separation=settings.damping_in_separation,
+        ground_damping_ratio=settings.ground_damping_ratio, natural_frequency_Hz=natural.mesh_frequency,
         folds_rpm=folds, jumps_up_rpm=jumps(drive, swept.up), jumps_up_rpm_error=errors.jumps["up"],
         jumps_down_rpm=jumps(drive, swept.down[::-1]), jumps_down_rpm_error=errors.jumps["down"],
         heaviest_torque_share=largest / heaviest if settings.mesh == "force_surface" else None,

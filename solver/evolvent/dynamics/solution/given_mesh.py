@@ -19,6 +19,7 @@ from evolvent.dynamics.excitation.force_surface import paper_law
 from evolvent.dynamics.mesh_oscillator import GivenMesh, sweep_at
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, linear_side, no_side
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent.dynamics.pair_model import check_damping
 from evolvent.dynamics.solution.swept_vibration import SweptVibration, checked_speeds, swept_tables
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.input_checks import array, is_index, number, refuse
@@ -37,8 +38,8 @@ class GivenMeshVibration(SweptVibration):
     """Mean stiffness of the mesh [N/mm]."""
 
     def plot(self, path: Path | str) -> Path:
-        """Draws amplitude, dynamic factor and time out of contact over the speed to a PNG file, and returns its path.
-        Raises InputError for another ending, WriteError."""
+        """Draws amplitude, dynamic factor and time out of contact over the speed to a PNG file, and returns its path;
+        creates missing folders. Raises InputError for another ending, WriteError."""
         from evolvent.dynamics.figures.response import given_mesh_picture
         from evolvent.results.solution.user_files import save_picture
 
@@ -52,7 +53,7 @@ class GivenMeshVibration(SweptVibration):
 def given_mesh_vibration(
     stiffness: Sequence[float] | Floats, error: Sequence[float] | Floats, speeds: Sequence[float] | Floats, *,
     mass: float, load: float, teeth: int, damping_ratio: float, backlash: float | None = None,
-    damped_apart: bool = False,
+    damping_in_separation: bool = False,
 ) -> GivenMeshVibration:
     """Vibration of an oscillator that runs up and down through some speeds on a mesh of your own.
 
@@ -65,14 +66,14 @@ def given_mesh_vibration(
     damping_ratio: of the mesh, over the critical damping 2√(k m) at the mean stiffness.
     backlash: along the line of action, from flank to flank [mm]; the back flanks have the stiffness of the loaded ones
         at the same phase. None: there are none.
-    damped_apart: whether the damping acts on separated flanks, too.
+    damping_in_separation: whether the damping acts on separated flanks, too.
 
     Raises InputError, NoSteadyState.
     """
     k, e = _over_a_mesh(stiffness, error)
     for name, value, unit in (("mass", mass, "t"), ("load", load, "N")):
         number(name, value, f"a number above 0, in {unit}", "give a positive one", lambda given: given > 0.0)
-    number("damping_ratio", damping_ratio, "a number from 0 on", "0.03 to 0.1 are usual", lambda given: given >= 0.0)
+    check_damping(damping_ratio, damping_in_separation)
     if backlash is not None:
         number("backlash", backlash, "a number from 0 on, in mm, or None", "leave it out for none", lambda j: j >= 0.0)
     if not (is_index(teeth) and teeth >= 1):
@@ -80,7 +81,8 @@ def given_mesh_vibration(
     values, side, mean = checked_speeds(speeds), linear_side(k, e), float(np.mean(k))
     law = MeshLaw(side, no_side()) if backlash is None else paper_law(side, backlash)
     damping = damping_ratio * 2.0 * np.sqrt(mean * mass)
-    pair = GivenMesh(TorsionalModel(mass, load, law, damping, damped_apart, teeth=int(teeth)), int(teeth), mean)
+    model = TorsionalModel(mass, load, law, damping, damping_in_separation, teeth=int(teeth))
+    pair = GivenMesh(model, int(teeth), mean)
     own = swept_tables(pair, sweep_at(pair, values), None)
     return GivenMeshVibration(own.rows, own.branch, own.natural_speed, own.jumps_up, own.jumps_down, mass, mean)
 

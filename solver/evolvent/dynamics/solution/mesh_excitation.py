@@ -23,7 +23,7 @@ from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.input_checks import Words, is_index, number, numbers, refuse
+from evolvent_meshes.input_checks import Words, both_gears, is_index, number, numbers, refuse
 
 FEWEST_POSITIONS = 3
 """Least number of positions of a pitch: two do not show the first mesh harmonic."""
@@ -78,8 +78,8 @@ class GearExcitation:
         return self.mesh.secant
 
     def save(self, path: Path | str) -> Path:
-        """Writes the curves to a CSV file with the columns of excitation.csv, and returns its path. Raises InputError
-        for another ending, WriteError."""
+        """Writes the curves to a CSV file with the columns of excitation.csv, and returns its path; creates missing
+        folders. Raises InputError for another ending, WriteError."""
         from evolvent.dynamics.results.tables import excitation_rows
         from evolvent.results.solution.user_files import save_rows
 
@@ -87,7 +87,7 @@ class GearExcitation:
 
     def plot(self, path: Path | str) -> Path:
         """Draws the curves, the force over the deflection and the peak-to-peak transmission error over the torque to a
-        PNG file, and returns its path. Raises InputError for another ending, WriteError."""
+        PNG file, and returns its path; creates missing folders. Raises InputError for another ending, WriteError."""
         from evolvent.dynamics.figures.excitation import excitation_picture
         from evolvent.dynamics.results.curves import NO_COMPANION
         from evolvent.dynamics.results.design_load import excitation_facts
@@ -139,6 +139,7 @@ def _check(gears: GearModel, torques: Sequence[float], positions: int, flanks: F
         refuse("torques", "one or several, ascending", list(torques), "write sorted(torques)")
     if not (is_index(positions) and positions >= FEWEST_POSITIONS):
         refuse("positions", f"a whole number from {FEWEST_POSITIONS} on", positions, "20 are usual, 40 show each step")
+    both_gears("flanks", flanks, FlankChart, optional=True)
     for member, body, chart in zip(Member, gears.bodies, flanks, strict=True):
         if (body.worn is None) != (chart is None):
             found = "none for a gear that has one" if chart is None else "one for a gear as designed"

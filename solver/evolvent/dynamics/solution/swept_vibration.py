@@ -51,7 +51,8 @@ class SweptVibration:
         return np.array([getattr(row, column) for row in self.rows if row.way == way])
 
     def save(self, path: Path | str) -> Path:
-        """Writes `rows` to a CSV file, and returns its path. Raises InputError for another ending, WriteError."""
+        """Writes `rows` to a CSV file, and returns its path; creates missing folders. Raises InputError for another
+        ending, WriteError."""
         from evolvent.results.solution.user_files import save_rows
 
         return save_rows(path, self.rows)

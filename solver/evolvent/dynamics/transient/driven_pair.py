@@ -12,7 +12,7 @@ from evolvent.dynamics.modes.mode_meshes import mode_mesh
 from evolvent.dynamics.pair_model import DriveSettings
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.problem.gear_inertia import TONNE_PER_MM3, refuse_less_than_the_body
+from evolvent.gears.problem.gear_inertia import refuse_less_than_the_body
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.gears.member import Member
@@ -31,15 +31,13 @@ def resolved_modes(
 ) -> tuple[GearModes, GearModes]:
     """Modes of pinion and wheel that have four time steps a period, and at least so many of each harmonic.
 
-    density: [kg/m³]. sampled: time steps a second, at the highest speed. per_harmonic: so many of each harmonic of the
+    density: [t/mm³]. sampled: time steps a second, at the highest speed. per_harmonic: so many of each harmonic of the
     ring of teeth instead, None for the default. least: by default `LEAST`. computed: called after each harmonic.
 
     Raises MeshError, NotPositiveDefinite, OutOfMemory.
     """
     choice = ModeChoice(2.0 * np.pi * RESOLVED * sampled, per_harmonic, least)
-    heavy = [
-        replace(body, material=replace(body.material, density=TONNE_PER_MM3 * density)) for body in model.bodies
-    ]
+    heavy = [replace(body, material=replace(body.material, density=density)) for body in model.bodies]
     pinion, wheel = (gear_modes(body, choice, mode_mesh(problem, body), computed) for body in heavy)
     return pinion, wheel
 

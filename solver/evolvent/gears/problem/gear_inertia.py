@@ -10,12 +10,10 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile
-from evolvent_meshes.input_checks import Words, refuse
+from evolvent_meshes.input_checks import Words, instance, number, refuse
 
 POINTS = 2001
 """Number of points of fillet and involute each: the moment of inertia is then right to 1e-9."""
-TONNE_PER_MM3 = 1e-12
-"""Density of 1 kg/m³ [t/mm³]."""
 ROUNDING = 1e-3
 """Relative difference by which a meshed body may have more inertia than the drawn one, and a given value less than
 either."""
@@ -24,23 +22,33 @@ either."""
 def polar_moment(gear: GearParameters, density: float) -> float:
     """I [t·mm²] about the axis of a gear with its bore and what lies beside its web left out; so are modifications.
 
-    density: [kg/m³]. ∫ρr² dV = ρ b ∮ r⁴/4 dθ along the section's rim. 1 kg·m² is 1000 t·mm².
+    density: [t/mm³]; steel has 7.85e-9. ∫ρr² dV = ρ b ∮ r⁴/4 dθ along the section's rim. 1 kg·m² is 1000 t·mm².
+
+    Raises InputError.
     """
+    instance("gear", gear, GearParameters, "give pair.pinion or pair.wheel")
+    check_density(density)
     moment = _disc_moment(gear, _section(gear), gear.bore_diameter)
     if (web := gear.thin_web) is not None:
         outer, inner = (0.5 * diameter for diameter in gear.web_diameters)
         moment -= (gear.face_width - web.thickness) * np.pi * (outer**4 - inner**4) / 2.0
-    return float(TONNE_PER_MM3 * density * moment)
+    return float(density * moment)
+
+
+def check_density(density: float) -> None:
+    """Raises InputError for a density [t/mm³] that no material of gears has."""
+    wanted = "a number from 1e-10 to 3e-8, in t/mm³"
+    number("density", density, wanted, "steel has 7.85e-9, which is 7850 kg/m³", lambda ϱ: 1e-10 <= ϱ <= 3e-8)
 
 
 def teeth_moment(gear: GearParameters, density: float) -> float:
-    """Moment of inertia [t·mm²] of the teeth alone, outside the root circle. density: [kg/m³]."""
-    return float(TONNE_PER_MM3 * density * _disc_moment(gear, _section(gear), gear.root_diameter))
+    """Moment of inertia [t·mm²] of the teeth alone, outside the root circle. density: [t/mm³]."""
+    return float(density * _disc_moment(gear, _section(gear), gear.root_diameter))
 
 
 def solid_moment(gear: GearParameters, density: float) -> float:
-    """Moment of inertia [t·mm²] of a solid disc of tip diameter and face width. density: [kg/m³]."""
-    return float(TONNE_PER_MM3 * density * gear.face_width * np.pi * gear.tip_diameter**4 / 32.0)
+    """Moment of inertia [t·mm²] of a solid disc of tip diameter and face width. density: [t/mm³]."""
+    return float(density * gear.face_width * np.pi * gear.tip_diameter**4 / 32.0)
 
 
 def _disc_moment(gear: GearParameters, section: float, bore: float) -> float:
@@ -75,7 +83,7 @@ def added_inertia(inertia: float, body: float) -> float:
 def refuse_light_gears(pair: GearPair, inertias: tuple[float, float], density: float, remedy: str) -> None:
     """Raises InputError where pinion or wheel has less moment of inertia [t·mm²] than its body as it is drawn.
 
-    density: [kg/m³]. remedy: as in `refuse_less_than_the_body`.
+    density: [t/mm³]. remedy: as in `refuse_less_than_the_body`.
     """
     for member, gear, inertia in zip(Member, pair.gears, inertias):
         refuse_less_than_the_body(member, inertia, polar_moment(gear, density), remedy)
@@ -89,7 +97,7 @@ def refuse_less_than_the_body(member: Member, inertia: float, body: float, remed
             f"dynamics.{member.label}_inertia_kg_m2",
             f"at least that of the gear's body, {1e-3 * body:.4g} kg m², which gives way with all of its mass",
             Words(f"{1e-3 * inertia:.4g} kg m²"),
-            f"delete the key for the body's own, enlarge the bore, or take {remedy}",
+            f"delete the key for the body's own (in Python: polar_moment), enlarge the bore, or take {remedy}",
         )
 
 

@@ -17,10 +17,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from evolvent.gears.problem.iso_stiffness import LIGHT, STEEL, mesh_stiffness, single_stiffness
 from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.input_checks import number, one_of, refuse
 
 Surface = Literal["hardened", "through_hardened", "cast_iron"]
 
@@ -49,9 +50,22 @@ class Accuracy:
     """Allowable contact stress number σ_Hlim [MPa]; None where it is not known."""
 
     def __post_init__(self) -> None:
-        """Raises ValueError for through hardened teeth without σ_Hlim."""
+        """Raises InputError for an accuracy that no gear has, and for through hardened teeth without σ_Hlim."""
+        _check_limit("base_pitch_deviation", self.base_pitch_deviation, 0.0, "µm")
+        _check_limit("profile_deviation", self.profile_deviation, 0.0, "µm")
+        _check_limit("endurance", self.endurance, 100.0, "MPa")
+        one_of("tolerance_class", self.tolerance_class, (None, *range(1, 13)))
+        one_of("surface", self.surface, get_args(Surface))
         if self.surface == "through_hardened" and self.endurance is None:
-            raise ValueError("running-in of through hardened teeth: wanted σ_Hlim, found none; give `endurance`")
+            wanted = "σ_Hlim, in MPa, for the running-in of through hardened teeth"
+            refuse("endurance", wanted, None, "ISO 6336-5 has it")
+
+
+def _check_limit(name: str, value: float | None, least: float, unit: str) -> None:
+    """Raises InputError unless the value is None or a number from `least` on."""
+    if value is not None:
+        wanted = f"None or a number from {least:g} on, in {unit}"
+        number(name, value, wanted, "None where it is not known", lambda n: n >= least)
 
 
 def running_in(deviation: float, accuracy: Accuracy, velocity: float) -> float:

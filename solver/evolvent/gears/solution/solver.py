@@ -65,7 +65,7 @@ def solve_single_position(gears: GearModel, angle: float, friction: float = 0.0)
     wanted = f"a rotation [rad] within one engagement, {first:.4g} to {last:.4g}"
     remedy = f"is it in degrees? Positions repeat with 2π/z_1, {2.0 * np.pi / gears.pair.pinion.z:.4g} rad"
     number("angle", angle, wanted, remedy, lambda φ: first <= φ <= last)
-    check_frictions([friction])
+    check_friction(friction)
     swept = next(sweep_pitch(gears, Pitch((float(angle),)), [friction], initial_state([friction])))
     certify(swept.results)
     return swept.results[0]
@@ -93,11 +93,16 @@ def check_condensed(gears: GearModel) -> None:
     instance("gears", gears, GearModel, remedy)
 
 
+def check_friction(friction: float) -> None:
+    """Raises InputError unless it is a number from 0 to 1."""
+    number("friction", friction, "a number from 0 to 1", "dry steel has up to 0.3", lambda μ: 0.0 <= μ <= 1.0)
+
+
 def check_frictions(frictions: Sequence[float]) -> None:
     """Raises InputError unless they are different numbers from 0 to 1."""
     numbers("frictions", frictions)
     for friction in frictions:
-        number("friction", friction, "a number from 0 to 1", "dry steel has up to 0.3", lambda μ: 0.0 <= μ <= 1.0)
+        check_friction(friction)
     if len(frictions) == 0 or len(set(frictions)) < len(frictions):
         refuse("frictions", "one coefficient or several different ones", list(frictions), "give each once")
 

@@ -16,22 +16,28 @@ from mpi4py import MPI
 
 from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.contact.step.contact_width import CoarseContactWarning
+from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER, cells_across
 from evolvent.gears.pressure.line_peaks import LinePeak
 from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.solution.certified_pitch import certified_pitch
-from evolvent.gears.solution.solver import check_condensed, check_frictions, check_positions
+from evolvent.gears.solution.solver import check_condensed, check_friction, check_frictions, check_positions
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.solution.pitch_row import PitchRow
 from evolvent_meshes.arrays import Bools, Floats
+from evolvent_meshes.gears.pair import GearPair
 
 
 @dataclass(frozen=True, eq=False)
 class PitchSolution:
     """A certified pitch at one friction coefficient: k positions in equal steps, whose friction history is periodic."""
 
+    pair: GearPair
+    """Gear pair."""
+    load: GearLoad
+    """Torque that the gears were condensed for, per mm of face width of a plane problem."""
     friction: float
     """Coulomb's coefficient of friction μ."""
     results: tuple[PositionResult, ...]
@@ -112,14 +118,15 @@ class PitchSolution:
         ]
 
     def save(self, path: Path | str) -> Path:
-        """Writes `rows` to a CSV file, and returns its path. Raises InputError for another ending, WriteError."""
+        """Writes `rows` to a CSV file, and returns its path; creates missing folders. Raises InputError for another
+        ending, WriteError."""
         from evolvent.results.solution.user_files import save_rows
 
         return save_rows(path, self.rows)
 
     def plot(self, path: Path | str) -> Path:
         """Draws transmission error, mesh stiffness and largest pressure over the pitch to a PNG file, and returns its
-        path. Raises InputError for another ending, WriteError."""
+        path; creates missing folders. Raises InputError for another ending, WriteError."""
         from evolvent.results.solution.pitch_picture import pitch_picture
         from evolvent.results.solution.user_files import save_picture
 
@@ -130,6 +137,7 @@ def solve_pitch(
     gears: GearModel, friction: float = 0.0, positions: int = 20, comm: MPI.Comm = MPI.COMM_WORLD
 ) -> PitchSolution:
     """The pitch at one friction coefficient, see `solve_pitches`."""
+    check_friction(friction)
     return solve_pitches(gears, [friction], positions, comm)[0]
 
 
@@ -153,7 +161,7 @@ def solve_pitches(
     if comm.rank == 0:
         _warn_if_coarse(min(cells))
     return tuple(
-        PitchSolution(friction, results, pressure, gears.width_factor, count, solved.deflected)
+        PitchSolution(gears.pair, gears.load, friction, results, pressure, gears.width_factor, count, solved.deflected)
         for friction, results, pressure, count in zip(frictions, solved.by_friction, pressures, cells)
     )
 

@@ -13,18 +13,22 @@ from evolvent_meshes.input_checks import refuse
 
 
 def save_rows(path: Path | str, rows: Sequence[Any]) -> Path:
-    """Writes rows of a dataclass, one at least, to a CSV file with a column a field, and returns its path. Raises
-    InputError for another ending, WriteError."""
+    """Writes rows of a dataclass, one at least, to a CSV file with a column a field, and returns its path; creates
+    missing folders. Raises InputError for another ending, WriteError."""
     return write_bytes(_ending(path, ".csv"), csv_text([asdict(row) for row in rows]).encode())
 
 
 def save_picture(path: Path | str, png: bytes) -> Path:
-    """Writes a picture to a PNG file, and returns its path. Raises InputError for another ending, WriteError."""
+    """Writes a picture to a PNG file, and returns its path; creates missing folders. Raises InputError for another
+    ending, WriteError."""
     return write_bytes(_ending(path, ".png"), png)
 
 
-def _ending(path: Path | str, wanted: str) -> Path:
+def _ending(path: Path | str, ending: str) -> Path:
+    wanted = f"the name of a file that ends in {ending}"
+    if not isinstance(path, Path | str) or not Path(path).name:
+        refuse("path", wanted, path, f'write "name{ending}"')
     path = Path(path)
-    if path.suffix.lower() != wanted:
-        refuse("path", f"the name of a file that ends in {wanted}", path.name, f"write {path.with_suffix(wanted)}")
+    if path.suffix.lower() != ending:
+        refuse("path", wanted, path.name, f"write {path.with_suffix(ending)}")
     return path

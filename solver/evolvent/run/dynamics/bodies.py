@@ -23,7 +23,7 @@ def with_bodies(
     """The settings with rigid or elastic bodies, as the section asks. Collective. Raises as `with_elastic_bodies`."""
     if section.bodies == "rigid":
         return settings
-    return on_first(comm, lambda: with_elastic_bodies(settings, problem, section.density_kg_m3))
+    return on_first(comm, lambda: with_elastic_bodies(settings, problem, section.density))
 
 
 def elastic_point(scene: Scene, comm: MPI.Comm) -> OperatingPoint | None:

@@ -28,6 +28,12 @@ MANY_PARTS, MOST_PARTS = 64, 1024
 """Largest number of time steps from one position to the next: default, and upper limit that a scene may set."""
 DEVIATION = "a number above 0 up to 1000, in µm: no gear is perfect"
 PARTS = f"a power of two from 2 to {MOST_PARTS}"
+DAMPING = 1e-3, 1.0
+"""Smallest and largest damping ratio of a mesh. Without any, free vibration never dies away."""
+DAMPING_WANTED = f"a number from {DAMPING[0]:g} to {DAMPING[1]:g}"
+USUAL_DAMPING = "gear pairs have 0.02 to 0.1"
+TONNE_PER_MM3 = 1e-12
+"""Density of 1 kg/m³ [t/mm³]."""
 Speed = Annotated[float, Field(gt=0, le=FASTEST)]
 
 
@@ -87,7 +93,7 @@ class DynamicsSection(SceneSection):
     )
     damping_ratio: float = key(
         "damping of the mesh over the critical one, at the mean stiffness with what gives way in series",
-        "a number from 0.001 to 1", "gear pairs have 0.02 to 0.1", default=0.05, ge=1e-3, le=1,
+        DAMPING_WANTED, USUAL_DAMPING, default=0.05, ge=DAMPING[0], le=DAMPING[1],
     )
     damping_in_separation: bool = key(
         "whether it acts in free flight, too, as in the model of He et al. 2022", "true or false", default=False
@@ -166,6 +172,11 @@ class DynamicsSection(SceneSection):
         "without tip relief the relief that wear gives them; by default there is none",
         "a number from 100 to 3000, in MPa", "ISO 6336-5 has it", default=None, ge=100, le=3000,
     )
+
+    @property
+    def density(self) -> float:
+        """Density of both gears [t/mm³]."""
+        return TONNE_PER_MM3 * self.density_kg_m3
 
     @property
     def direction(self) -> Literal["up", "down"]:

@@ -5,32 +5,45 @@ A history is one load cycle, (k, 3, 3) stress tensors [MPa], in an elastic body.
 
 from __future__ import annotations
 
+from typing import Any, NoReturn
+
 import numpy as np
 from scipy.optimize import minimize
 
 from evolvent.strength.fatigue.smallest_sphere import centre
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.input_checks import Words, number, refuse
 
 AROUND, TILTS, DIRECTIONS = 90, 18, 12
 """Planes that are tried, 2° around the y axis and 5° towards it, and directions in each of them."""
 
 
+ASYMMETRY = 1e-6
+"""Largest difference of a tensor and its transpose, over the largest stress of the history."""
+
+
 def von_mises(stress: Floats) -> Floats:
-    """Von Mises stress (k,) of a history [MPa]."""
+    """Von Mises stress (k,) of a history [MPa]. Raises InputError."""
+    stress = _history(stress)
     deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
     return np.asarray(np.sqrt(1.5 * np.einsum("kij,kij->k", deviator, deviator)))
 
 
 def largest_shear(stress: Floats) -> Floats:
     """Maximum shear stress (k,) of a history: half of the difference of the largest and the smallest principal stress
-    [MPa]."""
+    [MPa]. Raises InputError."""
+    return _largest_shear(_history(stress))
+
+
+def _largest_shear(stress: Floats) -> Floats:
     principal = np.linalg.eigvalsh(stress)
     return np.asarray(0.5 * (principal[:, 2] - principal[:, 0]))
 
 
 def orthogonal_shear_range(stress: Floats) -> float:
-    """Largest less smallest shear stress parallel to the surface, τ_xz [MPa] (Lundberg and Palmgren 1947)."""
-    return float(np.ptp(stress[:, 0, 2]))
+    """Largest less smallest shear stress parallel to the surface, τ_xz [MPa] (Lundberg and Palmgren 1947). Raises
+    InputError."""
+    return float(np.ptp(_history(stress)[:, 0, 2]))
 
 
 def dang_van(stress: Floats, tension_factor: float, compression_factor: float) -> float:
@@ -41,10 +54,15 @@ def dang_van(stress: Floats, tension_factor: float, compression_factor: float) -
 
     The locus breaks at σ_h = 0, where it is the fatigue limit τ_w in fully reversed torsion; with a = 3 τ_w/σ_w − 1.5
     under tension it passes fully reversed tension too, τ_a = σ_w/2 at σ_h = σ_w/3. Another one that does is constant at
-    σ_w/2 below σ_h = σ_w/3: there it allows σ_w/2 where this one, with no factor under compression, has up to τ_w."""
+    σ_w/2 below σ_h = σ_w/3: there it allows σ_w/2 where this one, with no factor under compression, has up to τ_w.
+
+    Raises InputError."""
+    stress = _history(stress)
+    _positive("tension_factor", tension_factor)
+    _positive("compression_factor", compression_factor)
     hydrostatic = np.trace(stress, axis1=1, axis2=2) / 3.0
     deviator = stress - hydrostatic[:, None, None] * np.eye(3)
-    amplitude = largest_shear(deviator - centre(deviator.reshape(-1, 9)).reshape(3, 3))
+    amplitude = _largest_shear(deviator - centre(deviator.reshape(-1, 9)).reshape(3, 3))
     factor = np.where(hydrostatic > 0.0, tension_factor, compression_factor)
     return float((amplitude + factor * hydrostatic).max())
 
@@ -52,7 +70,15 @@ def dang_van(stress: Floats, tension_factor: float, compression_factor: float) -
 def fatemi_socie(stress: Floats, shear_modulus: float, yield_stress: float, factor: float) -> float:
     """max over planes and directions in them of Δγ/2 (1 + k σ_n,max/σ_y): amplitude of the shear strain, and largest
     tension on the plane, none under compression (Fatemi and Socie, Fatigue Fract. Eng. Mater. Struct. 11 (1988)
-    149-165)."""
+    149-165).
+
+    shear_modulus: G [MPa]. yield_stress: σ_y [MPa]. factor: k.
+
+    Raises InputError."""
+    stress = _history(stress)
+    _positive("factor", factor)
+    for name, value in (("shear_modulus", shear_modulus), ("yield_stress", yield_stress)):
+        number(name, value, "a number above 0, in MPa", "give a number", lambda n: n > 0.0)
 
     def damage(normals: Floats) -> Floats:
         shear, normal = plane_amplitudes(stress, normals)
@@ -63,6 +89,30 @@ def fatemi_socie(stress: Floats, shear_modulus: float, yield_stress: float, fact
     best = minimize(lambda at: -float(damage(normals_at(at[None]))[0]), angles[int(np.argmax(tried))],
                     method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-15})
     return float(max(-best.fun, tried.max()))
+
+
+def _positive(name: str, factor: float) -> None:
+    """Raises InputError for a factor that is no number from 0 on."""
+    number(name, factor, "a number from 0 on", "give a number", lambda a: a >= 0.0)
+
+
+def _history(stress: Any) -> Floats:
+    """The stress tensors as an array. Raises InputError unless they are finite and symmetric, one at least."""
+    try:
+        tensors = np.asarray(stress, dtype=np.float64)
+    except (TypeError, ValueError):
+        _refuse_history(stress)
+    if tensors.ndim != 3 or tensors.shape[1:] != (3, 3) or not len(tensors):
+        _refuse_history(Words(f"shape {tensors.shape}"))
+    if not np.isfinite(tensors).all():
+        _refuse_history(Words("NaN or infinite values in it"))
+    if np.abs(tensors - tensors.transpose(0, 2, 1)).max() > ASYMMETRY * np.abs(tensors).max():
+        _refuse_history(Words("a tensor that is not symmetric"))
+    return tensors
+
+
+def _refuse_history(found: object) -> NoReturn:
+    refuse("stress", "finite, symmetric tensors (k, 3, 3) [MPa], k >= 1", found, "passing_stress gives such a history")
 
 
 def plane_angles() -> Floats:

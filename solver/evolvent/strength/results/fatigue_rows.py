@@ -60,7 +60,7 @@ class FatigueRow:
     change rests on both histories."""
     change_percent: float
     """Change of the value at the point of comparison over that at the first friction coefficient; NaN without such a
-    point."""
+    point: where the first coefficient is 0, shear and tension at the surface are 0, the contact pressure is not."""
     change_percent_error: float
     """Difference of `change_percent` from the coarse companion's; NaN without one."""
     change_at_points_percent: float

@@ -49,7 +49,7 @@ def root_stress_figure(title: str, curves: Sequence[RootStressRow], rows: Sequen
     for friction, colour in zip(frictions, colours):
         axes[0].plot([], [], color=colour, label=f"finite elements, μ = {friction:g}")
     axes[1].legend(*_named(axes), loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
-    foot(figure, "Full: largest tension of the loaded side; dashed: compression of the back. Places: strength.csv.")
+    foot(figure, "Full: largest tension of the loaded side; dashed: compression of the back.")
     return figure
 
 

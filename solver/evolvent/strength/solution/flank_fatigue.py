@@ -11,7 +11,7 @@ import numpy as np
 
 from evolvent.fem.material import STEEL, Material
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.solution.solver import check_condensed
+from evolvent.gears.solution.solver import check_condensed, check_friction
 from evolvent.results.solution.pitch import PitchSolution
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, fatigue_of_both, flank_fatigue
@@ -23,7 +23,7 @@ from evolvent.strength.results.fatigue_tables import depth_rows, fatigue_rows, m
 from evolvent.strength.results.friction_fatigue import FrictionFatigue, zone_ends
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.input_checks import members, number, numbers, refuse
+from evolvent_meshes.input_checks import Words, instance, members, number, numbers, refuse, vector
 
 DEFAULT = FatigueSection()
 """Depths and factors of a scene that names none."""
@@ -101,14 +101,16 @@ class PitchFatigue:
         return list(map_rows(self.pair, self.by_friction))
 
     def save(self, path: Path | str) -> Path:
-        """Writes `over_flank` to a CSV file, and returns its path. Raises InputError for another ending, WriteError."""
+        """Writes `over_flank` to a CSV file, and returns its path; creates missing folders. Raises InputError for
+        another ending, WriteError."""
         from evolvent.results.solution.user_files import save_rows
 
         return save_rows(path, self.over_flank)
 
     def plot(self, path: Path | str) -> Path:
         """Draws the criterion of Dang Van over the pinion's flank and the depth, and three criteria below its most
-        loaded point, to a PNG file, and returns its path. Raises InputError for another ending, WriteError."""
+        loaded point, to a PNG file, and returns its path; creates missing folders. Raises InputError for another
+        ending, WriteError."""
         from evolvent.results.solution.user_files import save_picture
         from evolvent.strength.results.fatigue_picture import fatigue_picture
 
@@ -135,6 +137,8 @@ def contact_fatigue(
         300
     """
     _check(peak_pressure, half_width, friction)
+    instance("material", material, Material, "write Material(youngs_modulus, poissons_ratio), settings=... behind")
+    _check_settings(settings)
     columns = (np.full(1, float(each)) for each in (0.0, 0.0, peak_pressure, half_width, friction))
     loads = FlankLoads(np.zeros((1, 3), dtype=int), *columns)
     found = flank_fatigue(loads, friction, settings.depths, settings.of(material))
@@ -155,7 +159,10 @@ def passing_stress(
     """
     _check(peak_pressure, half_width, friction)
     number("depth", depth, "a number from 0 on, in mm", "0 is the surface", lambda z: z >= 0.0)
-    x, tractions = np.asarray(places, dtype=float), HertzTractions(half_width, peak_pressure, friction)
+    number("poissons_ratio", poissons_ratio, "a number from 0 to 0.5", "steel has 0.3", lambda ν: 0.0 <= ν <= 0.5)
+    wanted, remedy = "finite numbers, in mm", "write np.linspace(first, last, count)"
+    x = np.array(vector("places", places, (np.size(places),), wanted, remedy))
+    tractions = HertzTractions(half_width, peak_pressure, friction)
     return plane_strain(tractions.stress(x, np.full_like(x, depth)), poissons_ratio)
 
 
@@ -163,7 +170,12 @@ def _check(peak_pressure: float, half_width: float, friction: float) -> None:
     """Raises InputError for loads that no contact has."""
     number("peak_pressure", peak_pressure, "a number above 0, in MPa", "give the peak p0", lambda p: p > 0.0)
     number("half_width", half_width, "a number above 0, in mm", "give half of the width 2b", lambda b: b > 0.0)
-    number("friction", friction, "a number from 0 to 1", "dry steel has up to 0.3", lambda μ: 0.0 <= μ <= 1.0)
+    check_friction(friction)
+
+
+def _check_settings(settings: FatigueSettings) -> None:
+    """Raises InputError unless these are settings."""
+    instance("settings", settings, FatigueSettings, "write FatigueSettings(), or leave it out")
 
 
 def pitch_fatigue(
@@ -171,14 +183,19 @@ def pitch_fatigue(
 ) -> PitchFatigue:
     """Contact fatigue of both flanks from a solved pitch, as of `evolvent fatigue`, without error bars.
 
-    gears: those of the pitches. pitches: of `solve_pitches`, one a friction coefficient; changes are over the first.
+    gears: those of the pitches. pitches: of `solve_pitches`, one a friction coefficient. Changes are over the first;
+        where that is 0, criteria that are 0 without friction have none, NaN.
 
     Raises InputError.
     """
     check_condensed(gears)
+    _check_settings(settings)
     solved = members("pitches", pitches, (PitchSolution,), "pitch_fatigue(gears, solve_pitches(gears, [0.0, 0.1]))")
     if not solved:
         refuse("pitches", "one solution at least", [], "write pitch_fatigue(gears, [pitch])")
+    for pitch in solved:
+        if (pitch.pair, pitch.load) != (gears.pair, gears.load):
+            refuse("pitches", "those of these gears", Words(_difference(gears, pitch)), "solve them with these gears")
     pinion, wheel = (settings.of(body.material) for body in gears.bodies)
     found, facts, heights = [], [], gears.bodies[0].z
     for pitch in solved:
@@ -189,3 +206,13 @@ def pitch_fatigue(
         found.append(FrictionFatigue(pitch.friction, both, math.nan, zone_ends(gears.pair, inner)))
         facts.append(fatigue_facts(gears.pair, found[-1], positions, inner, (pinion, wheel)))
     return PitchFatigue(gears.pair, tuple(found), tuple(facts))
+
+
+def _difference(gears: GearModel, pitch: PitchSolution) -> str:
+    """Words on a pitch that was solved with other gears."""
+    if pitch.pair != gears.pair:
+        return "a pitch of another gear pair"
+    one, other = (
+        f"{1e-3 * gears.width_factor * load.torque:.5g} N·m on the {load.on.label}" for load in (pitch.load, gears.load)
+    )
+    return f"a pitch under {one} beside gears under {other}"

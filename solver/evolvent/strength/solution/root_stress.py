@@ -28,16 +28,14 @@ from evolvent.strength.results.tables import (
     root_stress_rows,
     strength_rows,
 )
-from evolvent.strength.standard.factors import Edition
+from evolvent.strength.standard.factors import EDITIONS, Edition
 from evolvent.strength.standard.root_stress import RootLoad, StandardStress, standard_stress
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.input_checks import instance, is_index, number, refuse
+from evolvent_meshes.input_checks import instance, is_index, number, numbers, refuse
 
 NO_DEEP_TEETH = 12
 """Tolerance class by ISO 1328-1 of gears whose deep tooth factor is 1."""
-EDITIONS: tuple[Edition, ...] = (2006, 2019)
-"""Editions of ISO 6336-3."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,19 +61,21 @@ class RootStress:
 
         editions: of ISO 6336-3. tolerance_class: by ISO 1328-1, for the deep tooth factor of 2006.
 
-        Raises InputError for rims that the standard does not cover.
+        Raises InputError, also for rims that the standard does not cover.
         """
+        numbers("editions", editions)
         return [row for load in self.loads for row in strength_rows(load, self.by_friction, editions, tolerance_class)]
 
     def save(self, path: Path | str) -> Path:
-        """Writes `curves` to a CSV file, and returns its path. Raises InputError for another ending, WriteError."""
+        """Writes `curves` to a CSV file, and returns its path; creates missing folders. Raises InputError for another
+        ending, WriteError."""
         from evolvent.results.solution.user_files import save_rows
 
         return save_rows(path, self.curves)
 
     def plot(self, path: Path | str) -> Path:
-        """Draws `curves` beside the formulas to a PNG file, and returns its path. Raises InputError for another ending
-        and for rims that the standard does not cover, WriteError."""
+        """Draws `curves` beside the formulas to a PNG file, and returns its path; creates missing folders. Raises
+        InputError for another ending and for rims that the standard does not cover, WriteError."""
         from evolvent.results.solution.user_files import save_picture
         from evolvent.strength.results.root_stress_picture import root_stress_picture
 
@@ -125,7 +125,7 @@ def iso_6336_3(
 
     Raises InputError, also for rims that the standard does not cover.
     """
-    loads = _loads(pair, pinion_torque, (edition,))
+    loads = _loads(pair, pinion_torque)
     pinion, wheel = (standard_stress(load, edition, tolerance_class) for load in loads)
     return pinion, wheel
 
@@ -136,16 +136,14 @@ def root_formulas(
     """Nominal root stress of both gears by all formulas: ISO 6336-3, and of spur gears with equal shares of the load at
     the points where pairs begin or end to share it, and largest over the path of contact with Pedrero's shares; the
     columns of strength.csv. Arguments and errors are those of `iso_6336_3`."""
-    loads = _loads(pair, pinion_torque, editions)
+    numbers("editions", editions)
+    loads = _loads(pair, pinion_torque)
     return [row for load in loads for row in formula_rows(load, editions, tolerance_class)]
 
 
-def _loads(pair: GearPair, pinion_torque: float, editions: Sequence[Edition]) -> tuple[RootLoad, RootLoad]:
-    """Loads of the roots of pinion and wheel. Raises InputError for a pair, torque or edition that there is not."""
+def _loads(pair: GearPair, pinion_torque: float) -> tuple[RootLoad, RootLoad]:
+    """Loads of the roots of pinion and wheel. Raises InputError for a pair or torque that there is not."""
     instance("pair", pair, GearPair, "write GearPair(pinion, wheel, centre_distance)")
     number("pinion_torque", pinion_torque, "a number above 0, in N·mm", "170e3 are 170 N·m", lambda T: T > 0.0)
-    for edition in editions:
-        if edition not in EDITIONS:
-            refuse("edition", "2006 or 2019", edition, "take one of these")
     pinion, wheel = (RootLoad(pair, member, pinion_torque) for member in Member)
     return pinion, wheel

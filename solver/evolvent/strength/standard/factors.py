@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Literal, get_args
 
 from evolvent_meshes.errors import InputError
 
 Edition = Literal[2006, 2019]
+EDITIONS: tuple[Edition, ...] = get_args(Edition)
+"""Editions of ISO 6336-3."""
 STEEPEST_HELIX = math.radians(30.0)
 """Largest helix angle that counts in Y_β [rad]."""
 ONE_CONTACT, DEEP = 2.05, 2.5

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from evolvent.strength.standard.contact_points import ContactPoint, contact_points
 from evolvent.strength.standard.critical_section import CriticalSection, root_section
 from evolvent.strength.standard.factors import (
+    EDITIONS,
     Edition,
     deep_tooth_factor,
     helix_angle_factor,
@@ -23,7 +24,10 @@ from evolvent.strength.standard.virtual_gear import virtual_contact_ratio
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.input_checks import one_of
 
+TOLERANCE_CLASSES = tuple(range(1, 13))
+"""Tolerance classes of ISO 1328-1."""
 FINE, ROUNDS = 400, 3
 """Points of the flank among which the largest stress is sought, and how often the best one's surroundings are."""
 
@@ -133,7 +137,11 @@ def standard_stress(load: RootLoad, edition: Edition, tolerance_class: int = 6) 
     below the tip, also where two pairs are always in contact: there Y_DT (2006) or f_ε (2019) say what they share.
 
     tolerance_class: by ISO 1328-1.
+
+    Raises InputError.
     """
+    one_of("edition", edition, EDITIONS)
+    one_of("tolerance_class", tolerance_class, TOLERANCE_CLASSES)
     pair, ε = load.pair, load.contact_ratio
     form = load.form_at(ε - 1.0)
     form_factor = form.form_factor * load_distribution_factor(ε, pair.overlap_ratio, edition)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -116,7 +116,8 @@ NO_SIDE: Any = BASE
         (lambda: Transient(problem(), H, InitialState(velocities={PUNCH: (0.0, 1.0), 1: (0.0, 1.0)})),
          r"velocities: wanted each body once, found \[1, 1\]"),
         (lambda: solve(problem()).displacement(COPY), r"solution: .* another body, 'base'"),
-        (lambda: solve(problem()).function(2), r"solution: wanted a body index below 2, found 2"),
+        (lambda: solve(problem()).function(2), r"wanted a body of the problem, or its number from 0 to 1, found 2"),
+        (lambda: solve(problem()).function(cast("Body", "punch")), r"found 'punch'; names are not searched: give the"),
     ],
 )
 def test_bodies_and_groups_that_are_not_there_are_refused(call: Callable[[], Any], message: str) -> None:

@@ -78,14 +78,14 @@ def test_an_unknown_error_has_none() -> None:
 
 
 def test_no_curve_of_perfect_gears() -> None:
-    """K_v of ISO 6336-1 is drawn for gears with deviations alone; else the foot names the keys that it wants. Once,
+    """K_v of ISO 6336-1 is drawn for gears with deviations alone; else the foot names what it wants. Once,
     that of perfect gears was drawn under the standard's name."""
     for accuracy, curve in ((DEVIATING, True), (Accuracy(), False)):
         figure = drawn(False, accuracy)
         factor, foot = figure.axes[1], " ".join(text.get_text() for text in figure.texts)
         assert (ISO in [str(line.get_label()) for line in factor.lines]) == curve
         assert (factor.get_legend() is not None) == curve
-        assert ("dynamics.profile_deviation_um" in foot) != curve
+        assert ("f_fα" in foot) != curve
 
 
 def words(figure: Figure) -> str:

@@ -25,7 +25,7 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
-DENSITY, MODES = 7850.0, 3
+DENSITY, MODES = 7.85e-9, 3
 
 
 def bored(bore: float) -> tuple[str, ...]:
@@ -68,7 +68,7 @@ def test_shapes_are_static_answers(kind: str, member: Member) -> None:
     """u_1 = K⁻¹f, u_2 = K⁻¹Mr and u_3 = K⁻¹Mu_1: their work under f, Mr and Mu_1 is their stiffness, to 1e-8 of it;
     the moment of inertia is that of the section, and one shape of all inertia has at most all of it."""
     problem = gear_problem(spur_scene(*bored(70.0)) if kind == "spur" else helical_scene())
-    gear = static_shapes(problem, member, 1e-12 * DENSITY)
+    gear = static_shapes(problem, member, DENSITY)
     K, M, g = gear.stiffness, gear.mass, gear.closing
     assert g[0] == pytest.approx(problem.pair.gears[member].base_radius)
     assert K[1, 1:] == pytest.approx(-g[1:], rel=1e-8)

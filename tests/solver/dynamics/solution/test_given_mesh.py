@@ -71,7 +71,8 @@ def test_a_given_mesh_is_saved_and_drawn(tmp_path: Path) -> None:
     ({"mass": 0.0}, "mass: wanted a number above 0, in t"),
     ({"load": -1.0}, "load: wanted a number above 0, in N"),
     ({"teeth": 50.5}, "teeth: wanted a whole number"),
-    ({"damping_ratio": -0.1}, "damping_ratio: wanted a number from 0 on"),
+    ({"damping_ratio": 0.0}, "damping_ratio: wanted a number from 0.001 to 1"),
+    ({"damping_in_separation": 1}, "damping_in_separation: wanted a bool"),
     ({"backlash": -1.0}, "backlash: wanted a number from 0 on"),
     ({"speeds": [3000.0]}, "speeds: wanted two or more"),
 ])

@@ -14,21 +14,26 @@ from evolvent.dynamics import (
     Accuracy,
     DriveSettings,
     GearExcitation,
+    geometric_backlash,
     mesh_excitation,
     natural_speed,
+    polar_moment,
     vibration,
     with_elastic_bodies,
 )
 from evolvent.dynamics.of_scene import drive_settings
 from evolvent.dynamics.results.tables import excitation_rows
-from evolvent.gears import FlankChart, condense
+from evolvent.gears import STEEL, FlankChart, condense
 from evolvent.gears.gear_model import GearModel
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import load_scene
+from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
 from tests.support.recorded_tables import assert_same_rows, columns_of, tables_of
+from tests.support.running.hub_and_rim import settings
 
 SCENE = ROOT / "demos/he2022_dynamics.toml"
 SETTINGS = (
@@ -62,7 +67,7 @@ def test_figures_are_those_of_the_command(excitation: GearExcitation, tmp_path: 
     assert_same_rows(excitation_rows(excitation.mesh), known["excitation.csv"])
     section = ONE.dynamics
     assert section is not None
-    settings = with_elastic_bodies(drive_settings(PROBLEM.pair, section), PROBLEM, section.density_kg_m3)
+    settings = with_elastic_bodies(drive_settings(PROBLEM.pair, section), PROBLEM, section.density)
     found = vibration(excitation, TORQUE, SPEEDS, settings, Accuracy(5.0, 4.0))
     assert_same_rows(list(found.rows), known["response.csv"])
     assert_same_rows(list(found.branch), known["branch.csv"])
@@ -108,6 +113,11 @@ def test_results_save_and_draw_themselves(excitation: GearExcitation, tmp_path: 
             assert image.format == "PNG" and image.width > 1000
         with pytest.raises(InputError, match=r"path: wanted the name of a file that ends in \.png"):
             result.plot(tmp_path / "picture.pdf")
+    for path in (None, "", "."):
+        with pytest.raises(InputError, match=r'path: wanted the name of a file .*; write "name\.csv"'):
+            found.save(path)  # type: ignore[arg-type]  # refused
+    with pytest.raises(InputError, match="accuracy: wanted an Accuracy"):
+        vibration(excitation, TORQUE, SPEEDS, RIGID, (5, 6))  # type: ignore[arg-type]  # refused
     with pytest.raises(InputError, match=r"ends in \.csv, found .*; write .*table\.csv"):
         found.save(tmp_path / "table.npz")
 
@@ -120,6 +130,8 @@ def test_results_save_and_draw_themselves(excitation: GearExcitation, tmp_path: 
     ({"positions": 2}, "positions: wanted a whole number from 3 on"),
     ({"flanks": (FlankChart(np.linspace(140.0, 156.0, 9), np.zeros(1), np.zeros((9, 1))), None)},
      "flanks: wanted the charts that the gears were condensed with, found pinion: one for a gear as designed"),
+    ({"flanks": None}, "flanks: wanted two of FlankChart or None"),
+    ({"flanks": (None,)}, "flanks: wanted two of FlankChart or None"),
 ])
 def test_an_excitation_that_cannot_be_is_refused(gears: GearModel, wrong: dict[str, Any], words: str) -> None:
     """InputError names argument, value and remedy."""
@@ -129,12 +141,10 @@ def test_an_excitation_that_cannot_be_is_refused(gears: GearModel, wrong: dict[s
 
 @pytest.mark.parametrize(("wrong", "words"), [
     ({"torque": 1.01 * TORQUE}, "torque: wanted a number above 0 up to the heaviest of the excitation"),
-    ({"speeds": [3000.0]}, "speeds: wanted two or more, ascending"),
-    ({"speeds": [3000.0, 2000.0]}, "speeds: wanted two or more, ascending"),
-    ({"speeds": [0.0, 2000.0]}, "speeds: wanted numbers above 0, in r/min"),
-    ({"settings": replace(RIGID, inertias=(0.0, 7.65))}, "inertias: wanted two numbers above 0"),
-    ({"settings": replace(RIGID, damping_ratio=-0.1)}, "damping_ratio: wanted a number from 0 on"),
-    ({"settings": replace(RIGID, series_stiffness=0.0)}, "series_stiffness: wanted a number above 0"),
+    ({"torque": 0.0}, "found 0.0; for a heavier one give mesh_excitation a heavier torque"),
+    ({"settings": replace(RIGID, inertias=(7.65, 7.65e-3))}, "inertias: wanted of the wheel at least .*kg·m²"),
+    ({"settings": replace(RIGID, backlash=50.0)}, "backlash: wanted a number from 0 to the module, 3 mm"),
+    ({"settings": replace(RIGID, series_stiffness=720.0)}, "series_stiffness: wanted at least .* N/mm"),
     ({"settings": 0.05}, "settings: wanted"),
     ({"excitation": 0.05}, "excitation: wanted"),
 ])
@@ -145,6 +155,58 @@ def test_a_vibration_that_cannot_be_is_refused(
     right: dict[str, Any] = {"excitation": excitation, "torque": TORQUE, "speeds": SPEEDS, "settings": RIGID}
     with pytest.raises(InputError, match=words):
         vibration(**(right | wrong))
+    with pytest.raises(InputError, match=words):
+        natural_speed(*((right | wrong)[each] for each in ("excitation", "torque", "settings")))
+
+
+@pytest.mark.parametrize("speeds", [[3000.0], [3000.0, 2000.0], [0.0, 2000.0]])
+def test_speeds_that_cannot_be_are_refused(excitation: GearExcitation, speeds: list[float]) -> None:
+    """InputError names argument, value and remedy."""
+    words = "two or more, ascending" if min(speeds) else "numbers above 0, in r/min"
+    with pytest.raises(InputError, match=f"speeds: wanted {words}"):
+        vibration(excitation, TORQUE, speeds, RIGID)
+
+
+@pytest.mark.parametrize(("wrong", "words"), [
+    ({"inertias": (0.0, 7.65)}, "inertias: wanted two numbers above 0"), ({"inertias": 7.65}, "inertias: wanted two"),
+    ({"inertias": (7.65,)}, "inertias: wanted two"), ({"inertias": None}, "inertias: wanted two"),
+    ({"damping_ratio": 0.0}, "damping_ratio: wanted a number from 0.001 to 1"),
+    ({"damping_ratio": 5.0}, "damping_ratio: wanted a number from 0.001 to 1"),
+    ({"ground_damping_ratio": 5.0}, "ground_damping_ratio: wanted a number from 0 to 1"),
+    ({"damping_in_separation": "yes"}, "damping_in_separation: wanted a bool"),
+    ({"backlash": -0.1}, "backlash: wanted a number from 0 on, in mm"),
+    ({"series_stiffness": 0.0}, "series_stiffness: wanted a number above 0"),
+    ({"series_stiffness": None}, "series_stiffness: wanted a number above 0"),
+    ({"mesh": "tangnt"}, "mesh: wanted 'force_surface' or 'tangent' or 'secant', found 'tangnt'"),
+    ({"bodies": "elastic"}, "bodies: wanted None or the shapes.*with_elastic_bodies"),
+])
+def test_settings_that_cannot_be_are_refused(wrong: dict[str, Any], words: str) -> None:
+    """InputError names field, value and remedy."""
+    with pytest.raises(InputError, match=words):
+        replace(RIGID, **wrong)
+
+
+def test_inertia_taken_from_elastic_bodies_is_refused() -> None:
+    """Half of the inertia that the bodies have, given once their shapes are known: the mass matrix would be indefinite.
+    Right: refused; with a pair in place of a gear, likewise."""
+    elastic = settings()
+    with pytest.raises(InputError, match="inertias: wanted of the wheel at least that of its elastic body"):
+        replace(elastic, inertias=(elastic.inertias[0], 0.5 * elastic.inertias[1]))
+    for wrong in (lambda: polar_moment(PROBLEM.pair, STEEL.density),  # type: ignore[arg-type]  # refused
+                  lambda: geometric_backlash(PROBLEM.pair.pinion)):  # type: ignore[arg-type]  # refused
+        with pytest.raises(InputError, match=r"(gear|pair): wanted a Gear"):
+            wrong()
+
+
+@pytest.mark.parametrize("density", [7850.0, 7.85, 0.0])
+def test_a_density_in_another_unit_is_refused(density: float) -> None:
+    """Densities are in t/mm³, as those of a Material; steel from Python has the inertia of a scene's, to 1e-12."""
+    for refused in (lambda: polar_moment(PROBLEM.pair.pinion, density),
+                    lambda: with_elastic_bodies(RIGID, PROBLEM, density)):
+        with pytest.raises(InputError, match=r"density: wanted .* in t/mm³.*7\.85e-9"):
+            refused()
+    exact = moments_of_inertia(PROBLEM.pair, DynamicsSection())[0]
+    assert polar_moment(PROBLEM.pair.pinion, STEEL.density) == pytest.approx(exact, rel=1e-12)
 
 
 def test_charted_gears_want_their_charts() -> None:

@@ -42,7 +42,7 @@ def test_polar_moment_is_that_of_the_outline(teeth: int, helix: float, tip: dict
     X, Y = np.roll(x, -1), np.roll(y, -1)
     whole = float(np.sum((x * Y - X * y) * (x * x + x * X + X * X + y * y + y * Y + Y * Y))) / 12.0
     exact = 7850e-12 * 20.0 * (abs(whole) - np.pi * 15.0**4 / 2.0)
-    assert polar_moment(gear, 7850.0) == pytest.approx(exact, rel=1e-6)
+    assert polar_moment(gear, 7.85e-9) == pytest.approx(exact, rel=1e-6)
 
 
 @pytest.mark.parametrize(("hub", "inner"), [(50.0, 50.0), (None, 30.0)])
@@ -54,7 +54,7 @@ def test_inertia_beside_a_web_is_left_out(hub: float | None, inner: float) -> No
     )
     outer = 0.5 * full.root_diameter - 8.0
     ring = 7850e-12 * 15.0 * np.pi * (outer**4 - (0.5 * inner) ** 4) / 2.0
-    assert polar_moment(full, 7850.0) - polar_moment(webbed, 7850.0) == pytest.approx(ring, rel=1e-12)
+    assert polar_moment(full, 7.85e-9) - polar_moment(webbed, 7.85e-9) == pytest.approx(ring, rel=1e-12)
 
 
 def test_inertia_of_the_paper_is_in_tonnes() -> None:
@@ -62,5 +62,5 @@ def test_inertia_of_the_paper_is_in_tonnes() -> None:
     both move is I/(2 r_b²) = 0.7701 kg."""
     gear = GearParameters.from_rack(z=50, bore_diameter=70.0, **STANDARD)
     bore = 7850e-12 * 20.0 * np.pi * 35.0**4 / 2.0
-    assert polar_moment(gear, 7850.0) + bore == pytest.approx(7.65, rel=0.04)
+    assert polar_moment(gear, 7.85e-9) + bore == pytest.approx(7.65, rel=0.04)
     assert equivalent_mass(GearPair(gear, gear, 150.0), (7.65, 7.65)) == pytest.approx(0.7701e-3, rel=1e-4)

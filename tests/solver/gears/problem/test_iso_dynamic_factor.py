@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, MethodB, coefficients, method_b, running_in, worn_relief
+from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
@@ -124,3 +126,14 @@ def test_example_of_the_standard() -> None:
     for deviation in (7.0, 10.0):
         found = method_b(pair, mass, force, Accuracy(deviation, deviation)).factor(360.0)
         assert found == pytest.approx(1.003, abs=5e-4)
+
+
+@pytest.mark.parametrize(("wrong", "words"), [
+    ({"surface": "hard"}, "surface: wanted 'hardened' or 'through_hardened' or 'cast_iron', found 'hard'"),
+    ({"base_pitch_deviation": "5"}, "base_pitch_deviation: wanted None or a number from 0 on, in µm"),
+    ({"tolerance_class": 13}, "tolerance_class: wanted None or 1"), ({"endurance": 1.5}, "endurance: wanted None or"),
+])
+def test_an_accuracy_that_cannot_be_is_refused(wrong: dict[str, Any], words: str) -> None:
+    """InputError names field, value and remedy; an unknown surface would be taken for a through hardened one."""
+    with pytest.raises(InputError, match=words):
+        Accuracy(**wrong)

@@ -230,6 +230,9 @@ def test_wrong_arguments_are_refused(gears: GearModel) -> None:
     for frictions in ((-0.1,), (1.5,), (0.1, 0.1), ()):
         with pytest.raises(InputError, match="friction"):
             solve_pitches(gears, frictions, 2, MPI.COMM_SELF)
+    for solve in (lambda μ: solve_pitch(gears, μ, 2), lambda μ: solve_single_position(gears, 0.0, μ)):
+        with pytest.raises(InputError, match="friction: wanted a number from 0 to 1"):
+            solve([0.1])
     with pytest.raises(InputError, match="positions: wanted a whole number from 2 on, found 1"):
         solve_pitch(gears, 0.0, 1, MPI.COMM_SELF)
     with pytest.raises(InputError, match="angle: wanted"):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -15,6 +18,7 @@ from evolvent.strength.fatigue.criteria import (
 )
 from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import InputError
 
 PHASES = np.linspace(0.0, 2.0 * np.pi, 721)
 
@@ -141,3 +145,25 @@ def test_what_friction_changes_below_a_line_contact() -> None:
     assert all(1.0 < ratio < 1.012 for ratio in np.array(deep[1]) / deep[0])
     assert 1.03 < surface[1] / surface[0] < 1.06
     assert tension[1] / tension[0] == pytest.approx(0.132 / 0.107, rel=2e-3)
+
+
+@pytest.mark.parametrize("criterion", [
+    von_mises, largest_shear, orthogonal_shear_range, lambda stress: dang_van(stress, 0.4, 0.4),
+    lambda stress: fatemi_socie(stress, 8e4, 1600.0, 1.0),
+])
+@pytest.mark.parametrize(("stress", "words"), [
+    (np.eye(3), r"found shape \(3, 3\)"), (np.zeros((3, 3, 5)), r"found shape \(3, 3, 5\)"),
+    (np.zeros((0, 3, 3)), r"found shape \(0, 3, 3\)"), (np.full((2, 3, 3), np.nan), "found NaN"),
+    (np.arange(9.0).reshape(1, 3, 3), "not symmetric"), (None, "stress: wanted"), ("stress", "found 'stress'"),
+])
+def test_a_history_that_cannot_be_is_refused(criterion: Callable[[Any], object], stress: object, words: str) -> None:
+    """InputError says what of it is wrong, for each criterion."""
+    with pytest.raises(InputError, match=words):
+        criterion(stress)
+
+
+@pytest.mark.parametrize("factors", [(None, 0.4), (-0.1, 0.4), (0.4, np.nan)])
+def test_factors_that_cannot_be_are_refused(factors: tuple[Any, Any]) -> None:
+    """InputError names the factor."""
+    with pytest.raises(InputError, match="_factor: wanted a number from 0 on"):
+        dang_van(torsion(100.0), *factors)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -141,5 +142,31 @@ def test_pitches_that_cannot_be_are_refused(gears: GearModel) -> None:
     for wrong, words in (([], "pitches: wanted"), ([0.1], "pitches: wanted a tuple of PitchSolution")):
         with pytest.raises(InputError, match=words):
             pitch_fatigue(gears, wrong)  # type: ignore[arg-type]  # refused
+    with pytest.raises(InputError, match="settings: wanted a FatigueSettings"):
+        pitch_fatigue(gears, [], None)  # type: ignore[arg-type]  # refused
+    for places in (None, 0.0, ["x"], [np.nan]):
+        with pytest.raises(InputError, match="places: wanted finite numbers, in mm"):
+            passing_stress(places, 0.1, PEAK, HALF)  # type: ignore[arg-type]  # refused
+    with pytest.raises(InputError, match=r"poissons_ratio: wanted a number from 0 to 0\.5"):
+        passing_stress([0.0], 0.1, PEAK, HALF, poissons_ratio=0.7)
     with pytest.raises(InputError, match="depth: wanted a number from 0 on"):
         passing_stress([0.0], -0.1, PEAK, HALF)
+
+
+def test_pitches_of_other_gears_are_refused(gears: GearModel) -> None:
+    """Gears under another torque, another pair: neither has these pitches. Right: refused with both torques."""
+    pitches = solve_pitches(gears, [0.1], positions=2)
+    heavier = replace(gears, load=replace(gears.load, torque=2.0 * gears.load.torque))
+    with pytest.raises(InputError, match="found a pitch under 170 N·m on the pinion beside gears under 340 N·m on the"):
+        pitch_fatigue(heavier, pitches)
+    with pytest.raises(InputError, match="found a pitch of another gear pair"):
+        pitch_fatigue(replace(gears, pair=replace(gears.pair, centre_distance=150.05)), pitches)
+
+
+@pytest.mark.parametrize(("wrong", "words"), [
+    ({"settings": None}, "settings: wanted a FatigueSettings"), ({"material": OWN}, "material: wanted a Material"),
+])
+def test_settings_in_another_place_are_refused(wrong: dict[str, Any], words: str) -> None:
+    """InputError names argument, value and remedy."""
+    with pytest.raises(InputError, match=words):
+        contact_fatigue(PEAK, HALF, **wrong)

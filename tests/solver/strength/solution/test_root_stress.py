@@ -78,3 +78,18 @@ def test_a_standard_that_cannot_be_is_refused(wrong: dict[str, Any], words: str)
     """InputError names argument, value and remedy."""
     with pytest.raises(InputError, match=words):
         iso_6336_3(**{"pair": PROBLEM.pair, "pinion_torque": 170e3, "edition": 2019, **wrong})
+
+
+@pytest.mark.parametrize(("wrong", "words"), [
+    ({"editions": (2020,)}, "edition: wanted 2006 or 2019, found 2020"),
+    ({"editions": ("2019",)}, "edition: wanted 2006 or 2019, found '2019'"),
+    ({"editions": 2019}, r"editions: wanted a sequence of numbers, found 2019; write editions=\(2019,\)"),
+    ({"editions": None}, "editions: wanted a sequence of numbers, found None"),
+    ({"editions": (2006,), "tolerance_class": 0}, "tolerance_class: wanted 1 or 2 or"),
+])
+def test_an_edition_that_there_is_not_has_no_row(roots: RootStress, wrong: dict[str, Any], words: str) -> None:
+    """No row is labelled with an edition of the standard that there is not."""
+    with pytest.raises(InputError, match=words):
+        roots.stresses(**wrong)
+    with pytest.raises(InputError, match=words):
+        root_formulas(PROBLEM.pair, PROBLEM.torque, **wrong)

@@ -102,7 +102,7 @@ class PairCases:
         model = replace(gears.model, deflected=pitch.solved.deflected)
         progress.stage(MODES, sum(len(harmonics(gear.z)) for gear in problem.pair.gears))
         sampled = MeshSpeed(max(section.speeds_rpm), problem.pair.pinion.z).mesh_frequency * scene.sweep.positions  # Hz
-        count, density = section.modes_per_harmonic, dynamics.density_kg_m3
+        count, density = section.modes_per_harmonic, dynamics.density
         found = partial(resolved_modes, problem, model, density, sampled, count, on.least)
         modes = together(call.comm, lambda: found(lambda: progress.advance(more=True)))
         first, constant_speed = pitch.solved.by_friction[0], section.drive == "constant_speed"

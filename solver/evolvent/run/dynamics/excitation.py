@@ -9,13 +9,13 @@ import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, certify_torques, mesh_of, solved_figures
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.design_load import EXCITATION_FACTS, excitation_facts
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED, balanced
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.results.tables.table import Filled
 from evolvent.run.call import Call
 from evolvent.run.dynamics.kept_positions import kept_positions

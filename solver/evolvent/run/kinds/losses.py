@@ -10,6 +10,7 @@ from evolvent.check.scene_warnings import flank_warnings
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
+from evolvent.results.archive.run_cost import Timings
 from evolvent.results.drawing.table_pictures import TablePicture
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
@@ -94,7 +95,8 @@ class Losses(Computation[list[SolvedPitches]]):
         reasons = dict.fromkeys(load.coarse.reason for load in solved if load.coarse.reason)
         runs = (load.run_data(companion_of(load.coarse)) for load in solved)
         rows = [row for run in runs for row in _rows(run)]
-        return Results(self.scene, [LOSSES.of(rows)], [*[ON_DEFLECTED] * mended, *reasons])
+        timings = sum((load.timings for load in solved), Timings())
+        return Results(self.scene, [LOSSES.of(rows)], [*[ON_DEFLECTED] * mended, *reasons], timings=timings)
 
     def _check_parts(self, call: Call, parts: Mapping[str, Scene]) -> None:
         """Raises ArchiveError, before anything is removed, where stored positions belong to another scene. On rank 0

@@ -106,8 +106,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.oscillator": ("meshes", "fem.backend"),
     "dynamics.excitation": (
-        "meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "gears.solution",
-        "dynamics.oscillator",
+        "meshes", "meshes.gears", "fem.parallel", "gears", "gears.sweep", "gears.solution", "dynamics.oscillator",
     ),
     "dynamics": (
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene.schema", "scene",
@@ -119,8 +118,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.transient": (
         "meshes", "meshes.gears", "fem.parallel", "contact.newton", "contact.transient.time_schemes", "gears.problem",
-        "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics.oscillator", "dynamics.excitation", "dynamics",
-        "dynamics.modes",
+        "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics.oscillator", "dynamics", "dynamics.modes",
     ),
     "dynamics.results": (
         "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.error_bars",

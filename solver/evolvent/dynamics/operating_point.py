@@ -24,7 +24,6 @@ from evolvent.dynamics.excitation.loaded_mesh import (
     loaded_mesh_again,
     under_torques,
 )
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed, speeds_to_periods
 from evolvent.dynamics.oscillator.response import histories
 from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT, Settled, settled, static_state
@@ -38,6 +37,7 @@ from evolvent.gears.problem.flank_deviations import FlankCharts
 from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.gears.sweep.position_search import SearchedAt, SharedPosition, searched_at
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 

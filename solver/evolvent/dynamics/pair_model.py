@@ -9,7 +9,6 @@ from typing import Literal, TypeGuard, get_args
 import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.one_degree import OneDegree, one_degree
 from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side, with_chords
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
@@ -18,6 +17,7 @@ from evolvent.dynamics.small_system import GearShapes, pair_system
 from evolvent.gears.problem.gear_inertia import added_inertia, equivalent_mass
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.scene.schema.dynamics import DAMPING, DAMPING_WANTED, USUAL_DAMPING
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError

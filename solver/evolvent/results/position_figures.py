@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
 from evolvent.results.run_data import RunData, SolvedPosition
-from evolvent.scene.scene import GEARS
 
 
 def transmission_error_um(_: RunData, solved: SolvedPosition) -> float:
@@ -27,12 +24,7 @@ def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
 
 
 def secant_stiffness(run: RunData, solved: SolvedPosition) -> float:
-    """Secant stiffness T_1/(r_b1 b) over the transmission error [N/(mm·µm)]; modifications of the flanks count as
-    deflection.
-
-    NaN where a flank has a chart: which part of the transmission error is missing material is not known.
-    """
-    if any(getattr(run.scene, name).flank_csv is not None for name in GEARS):
-        return math.nan
+    """Secant stiffness T_1/(r_b1 b) over the deflection [N/(mm·µm)], what the torque adds to the unloaded transmission
+    error: modifications, charts and wear of the flanks are in both. NaN where no flanks face each other."""
     force = run.width * solved.result.torques[0] / run.pair.pinion.base_radius / run.pair.face_width
-    return force / (1e3 * solved.result.transmission_error)
+    return force / (1e3 * (solved.result.transmission_error - solved.unloaded_error))

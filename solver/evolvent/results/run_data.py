@@ -14,10 +14,12 @@ from evolvent.gears.pressure.flank_facets import FlankFacets
 from evolvent.gears.pressure.tip_zones import path_between_zones
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, requested_error_bars
 from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.store import ArchiveError
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, kept_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
@@ -56,6 +58,8 @@ class SolvedPosition:
     """Contact in slices across the face width."""
     teeth: tuple[ToothSummary, ...]
     """Results of the tooth pairs in contact, in ascending order of their index."""
+    unloaded_error: float
+    """Transmission error of the rigid flanks at this position, without load [mm]; NaN where none face each other."""
 
 
 @dataclass(frozen=True)
@@ -137,11 +141,15 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
         raise ArchiveError("wanted at least one position of the pitch, found none; `evolvent run ... --resume` goes on")
     flanks, materials = flank_facets(scene.gear_pair(), shapes, scene.mesh.order), scene.materials()
 
-    def solved(result: PositionResult) -> SolvedPosition:
-        cut = slices(result, flanks, materials)
-        return SolvedPosition(result, cut, tuple(tooth_summaries(result, cut)))
+    problem, angles = gear_problem(scene), np.array([position.results[0].stand.angle for position in swept])
+    unloaded = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
 
-    return RunData(scene, shapes, tuple(tuple(solved(r) for r in position.results) for position in swept))
+    def solved(result: PositionResult, error: float) -> SolvedPosition:
+        cut = slices(result, flanks, materials)
+        return SolvedPosition(result, cut, tuple(tooth_summaries(result, cut)), error)
+
+    positions = (tuple(solved(each, error) for each in one.results) for one, error in zip(swept, unloaded.tolist()))
+    return RunData(scene, shapes, tuple(positions))
 
 
 def archived_run(archive: Archive) -> RunData:

@@ -34,7 +34,8 @@ def check_folder(what: Computation[Any], out: Path, options: Options) -> None:
     folder = RunFolder(out)
     require_no_study(out)
     _keep_sources(what.scene, folder, options.source)
-    folder.require_free([*COMMON, *what.outputs.results, *what.outputs.stored])
+    own = [name for name in what.outputs.results if not name.startswith("pictures/")]  # those are left undrawn
+    folder.require_free([*COMMON, *own, *what.outputs.stored])
     _require_no_other(what, out)
     found = begun_results(what, out)
     if found and not (options.resume or options.overwrite):

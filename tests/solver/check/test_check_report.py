@@ -62,7 +62,7 @@ def test_report_symbols_are_unique(name: str) -> None:
     rows = re.findall(r"^  (?! )(.{42})(\S+) {2,}", text_of(name), re.MULTILINE)
     symbols = {symbol: what.strip() for what, symbol in rows}
     assert len(rows) == len(symbols), sorted(symbol for _, symbol in rows)
-    assert symbols["b"] == "face width" and symbols["b_H"] == "Hertz half-width at the pitch point"
+    assert symbols["b"] == "face width" and symbols["b_H"] == "half-width at pitch point, mean length"
     assert "width 2b_H " in text_of(name)
 
 
@@ -109,6 +109,8 @@ FIGURES = {
         ("normal tooth thickness at the tip", "2.3263 2.3263"),  # printed 2.326
         ("diameter at start of active profile", "145.420 145.420"),
         ("normal force on the flanks", "2412.1"),
+        ("half-width at pitch point, mean length", "0.0986"),
+        ("shortest length", "0.1306"),  # one tooth: 2 F/(π b p0) with the pressure below
         ("p0 at the pitch point, shortest length", "587.7"),
     ],
     "zhang2023": [

@@ -7,13 +7,13 @@ import pytest
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.oscillator.mesh_law import Jammed, linear_side
 from evolvent.dynamics.oscillator.mesh_speed import speeds_to_periods
 from evolvent.dynamics.oscillator.response import response
 from evolvent.dynamics.oscillator.speed_sweep import sweep_speeds
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive, lacking_room
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats

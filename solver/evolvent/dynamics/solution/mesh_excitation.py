@@ -14,12 +14,12 @@ from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh, certify_torques, mesh_of, solved_figures
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.problem.flank_deviations import FlankCharts
+from evolvent.gears.problem.flank_deviations import FlankChart, FlankCharts
 from evolvent.gears.solution.certified_pitch import balanced
 from evolvent.gears.solution.solver import check_condensed
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair

@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from evolvent.contact.transient.time_schemes.time_scheme import KinematicState
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_state import PairState
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.friction_history import FrictionHistory
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 
 
 def start_from_rest(pair: MovingPair, problem: GearProblem, speed: float, friction: float) -> PairState:

@@ -1,9 +1,9 @@
 """Tangent mesh stiffness: derivative of the force along the line of action by the displacement along it.
 
-ISO 6336-1 defines c_γ by the deflection of teeth without deviations, which is a secant. For modified or worn flanks a
-secant counts the removed material as deflection: 6 instead of 18 N/(mm·µm) at a tenth of the load that a relief was
-designed for. The tangent dF/dδ does not, since removed material opens gaps but is not compliant. Friction is left out,
-as in ISO 6336-1: with it the result would depend on which gear holds the torque.
+ISO 6336-1 defines c_γ by the deflection of teeth without deviations, which is a secant. For modified or worn flanks the
+force over the transmission error counts the removed material as deflection: 6 instead of 18 N/(mm·µm) at a tenth of the
+load that a relief was designed for. The tangent dF/dδ does not, since removed material opens gaps but is not compliant.
+Friction is left out, as in ISO 6336-1: with it the result would depend on which gear holds the torque.
 """
 
 from __future__ import annotations

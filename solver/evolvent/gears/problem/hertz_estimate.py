@@ -70,9 +70,9 @@ class HertzEstimate:
         between = (corners + np.append(corners[1:], corners[0] + pitch)) / 2
         return (between if reach == 0 else np.append(corners, between)) / pinion.base_radius
 
-    def half_width(self, roll_distance: float | Floats) -> Floats:
-        """Half-width b_H [mm] of the contact at roll distances ξ [mm], with the mean line length."""
-        load = np.asarray(self.normal_force / self.line_lengths[1])
+    def half_width(self, roll_distance: float | Floats, line_length: float | None = None) -> Floats:
+        """Half-width b_H [mm] of the contact at roll distances ξ [mm], with the given or the mean line length [mm]."""
+        load = np.asarray(self.normal_force / (line_length or self.line_lengths[1]))
         return line_half_width(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
 
     def peak_pressure(self, roll_distance: float | Floats, line_length: float | None = None) -> Floats:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from evolvent.results.archive.archive import ArchiveError
-from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent_meshes.files import WriteError
 
 
@@ -42,6 +42,8 @@ def draw(pictures: Iterable[Picture], folder: RunFolder) -> Drawn:
             raise
         except ArchiveError:  # a table, whose remedy is not to draw again
             raise
+        except FolderError as error:  # a foreign file of this name, whose remedy is not to draw again
+            failures.append(f"picture {picture.name}: not drawn ({error})")
         except Exception as error:  # whatever matplotlib, pyvista or a graphics driver may raise
             reason = str(error) or type(error).__name__
             failures.append(f"picture {picture.name}: not drawn ({reason}); `evolvent plot` draws it again")

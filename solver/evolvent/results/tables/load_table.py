@@ -51,7 +51,7 @@ class LoadRow:
     mesh_stiffness_N_per_mm_um_error: float
     """Estimated error of the tangent stiffness."""
     secant_stiffness_N_per_mm_um: float
-    """Secant stiffness, mean over the pitch; NaN where a flank has a chart."""
+    """Secant stiffness, mean over the pitch: force over what the torque adds to the unloaded transmission error."""
     secant_stiffness_N_per_mm_um_error: float
     """Estimated error of the secant stiffness."""
     loss_percent: float

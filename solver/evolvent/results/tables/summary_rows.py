@@ -86,8 +86,8 @@ class PositionRow:
     """Tangent stiffness at this load without friction: derivative of the force by the deflection along the line of
     action, over the face width."""
     secant_stiffness_N_per_mm_um: float
-    """Secant stiffness: force over face width and transmission error, in which flank modifications count as deflection;
-    null where a flank has a chart."""
+    """Secant stiffness: force over face width and deflection, that is what the torque adds to the unloaded transmission
+    error, as in excitation.csv. Modifications, charts and wear of the flanks do not count as deflection."""
     max_pressure_MPa: float
     """Largest contact pressure of all teeth between the tip-edge zones and away from the starts of linear reliefs; null
     where there is none."""
@@ -142,7 +142,7 @@ class FrictionRow:
     """Tangent stiffness, mean over the pitch. Not comparable with c_γα of ISO 6336-1 without care: it is the tangent,
     and includes torsion of both gear bodies down to the rigid bore."""
     secant_stiffness_N_per_mm_um: float
-    """Secant stiffness, mean over the pitch; null where a flank has a chart."""
+    """Secant stiffness, mean over the pitch: force over what the torque adds to the unloaded transmission error."""
     loss_percent: float
     """Friction work over input work of the pitch."""
     face_load_factor: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
@@ -10,19 +11,20 @@ import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, certify_torques, mesh_of, solved_figures
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.design_load import EXCITATION_FACTS, excitation_facts
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED, balanced
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.results.archive.run_cost import Timings
 from evolvent.results.tables.table import Filled
 from evolvent.run.call import Call
 from evolvent.run.dynamics.excitation_lines import large_bars
 from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques
-from evolvent.run.kept_pitch import COMPANION, OWN, Meshes
+from evolvent.run.kept_pitch import COMPANION, OWN, Meshes, timings_of
 from evolvent_meshes.arrays import Floats
 
 EXCITATION_TABLES = EXCITATION, HARMONICS, EXCITATION_FACTS
@@ -36,8 +38,8 @@ class SolvedExcitation:
     """Excitation on the meshes of the scene."""
     companion: CoarseExcitation
     """Excitation on the coarse meshes, at the same positions under the same torques."""
-    seconds: float
-    """Wall time of the companion [s]."""
+    timings: Timings
+    """Wall time of both [s]."""
     warnings: tuple[str, ...]
     """Warnings on the excitation, a sentence each."""
 
@@ -58,7 +60,7 @@ def solved_excitation(call: Call, loads: SceneTorques) -> SolvedExcitation:
     problem = loads.problem
     angles = np.array(uniform_pitch(problem.pair.pinion.z, loads.scene.sweep.positions).angles)
     unloaded = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
-    loaded = loaded_pitch(call, loads, angles, OWN)
+    loaded, timings = timed_pitch(call, loads, angles, OWN)
     again = call.companion(loads.scene, lambda: loaded_pitch(call, loads, angles, COMPANION))
     coarse = None if again.value is None else MeshExcitation(unloaded, again.value)
     companion = CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements, again.reason)
@@ -66,18 +68,30 @@ def solved_excitation(call: Call, loads: SceneTorques) -> SolvedExcitation:
     own = MeshExcitation(unloaded, loaded)
     doubtful = large_bars(harmonic_rows(own, companion)) if coarse is not None else ()
     said = loads.warnings, [ON_DEFLECTED] * mended, filter(None, [again.reason]), doubtful
-    return SolvedExcitation(own, companion, again.seconds, tuple(each for part in said for each in part))
+    return SolvedExcitation(
+        own, companion, replace(timings, error_bars=again.seconds), tuple(each for part in said for each in part)
+    )
 
 
 def loaded_pitch(call: Call, loads: SceneTorques, angles: Floats, meshes: Meshes) -> LoadedMesh:
-    """The certified pitch under each torque; on deflected flanks where its energy does not balance otherwise.
-    Collective. angles: (n,) rotations of the pinion [rad]."""
+    """The certified pitch of `timed_pitch`. Collective."""
+    return timed_pitch(call, loads, angles, meshes)[0]
+
+
+def timed_pitch(call: Call, loads: SceneTorques, angles: Floats, meshes: Meshes) -> tuple[LoadedMesh, Timings]:
+    """The certified pitch under each torque, on deflected flanks where its energy does not balance otherwise, and the
+    wall time of its solution. Collective. angles: (n,) rotations of the pinion [rad]."""
     asked = loads.problem.options.deflected_flanks
     kept = kept_positions(loads, call.folder, meshes.part)
 
+    preparing, begin = Timings(), time.perf_counter()
+
     @cache
     def gears() -> GearModel:
-        return call.gears(loads.problem, meshes.mesh, shown=not meshes.part).model
+        nonlocal preparing
+        made = call.gears(loads.problem, meshes.mesh, shown=not meshes.part)
+        preparing = timings_of(made)
+        return made.model
 
     def solved(deflected: bool) -> LoadedMesh:
         store = kept.deflected if deflected > asked else kept
@@ -96,4 +110,5 @@ def loaded_pitch(call: Call, loads: SceneTorques, angles: Floats, meshes: Meshes
         certify_torques(found, loads.torques)
         return mesh_of(found, loads.torques, loads.problem.base_radius, angles, deflected)
 
-    return balanced(solved, asked)
+    pitch = balanced(solved, asked)
+    return pitch, preparing.then_solved(time.perf_counter() - begin)

@@ -14,7 +14,6 @@ from evolvent.dynamics.results.response import BRANCH, DYNAMICS, RESPONSE, branc
 from evolvent.dynamics.results.spectrum import SPECTRUM, spectrum_rows
 from evolvent.dynamics.results.torque_map import TORQUE_MAP
 from evolvent.fem.parallel.ranks import together
-from evolvent.results.archive.run_cost import Timings
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.dynamics.bodies import with_bodies
@@ -94,8 +93,8 @@ class Dynamics(Computation[SolvedDynamics]):
             SPECTRUM.of(spectrum_rows(pair, swept, vibration.own.found)),
             HISTORIES.of(history_rows(vibration.motions)), TORQUE_MAP.of(vibration.over_torque.rows),
         ]
-        timings = Timings(error_bars=solved.excitation.seconds)
-        return Results(self._loads.scene, tables, [*excited, *vibration.warnings], timings=timings)
+        said = [*excited, *vibration.warnings]
+        return Results(self._loads.scene, tables, said, timings=solved.excitation.timings)
 
     @cached_property
     def _loads(self) -> SceneTorques:

@@ -8,7 +8,6 @@ from typing import ClassVar, Self
 
 from evolvent.dynamics.figures.all import EXCITATION_PICTURE
 from evolvent.dynamics.of_scene import check_positions
-from evolvent.results.archive.run_cost import Timings
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.dynamics.excitation import EXCITATION_TABLES, SolvedExcitation, solved_excitation
@@ -57,5 +56,6 @@ class Excitation(Computation[SolvedExcitation]):
 
     def results(self, call: Call, solved: SolvedExcitation) -> Results:
         """Tables of the excitation."""
-        timings = Timings(error_bars=solved.seconds)
-        return Results(self.scene, solved.tables(self.loads, self.warnings()), solved.warnings, timings=timings)
+        return Results(
+            self.scene, solved.tables(self.loads, self.warnings()), solved.warnings, timings=solved.timings
+        )

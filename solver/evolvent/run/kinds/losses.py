@@ -15,6 +15,7 @@ from evolvent.gears.problem.loss_factor import ohlendorf_loss_factor
 from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.archive.error_bar_data import plus_minus
+from evolvent.results.archive.run_cost import Timings
 from evolvent.results.drawing.table_pictures import TablePicture
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
@@ -122,7 +123,8 @@ class Losses(Computation[list[SolvedPitches]]):
         runs = [load.run_data(companion_of(load.coarse)) for load in solved]
         rows = [row for run in runs for row in _rows(run)]
         said = [*[ON_DEFLECTED] * mended, *reasons, *_about(runs)]
-        return Results(self.scene, [LOSSES.of(rows)], said)
+        timings = sum((load.timings for load in solved), Timings())
+        return Results(self.scene, [LOSSES.of(rows)], said, timings=timings)
 
     def _check_parts(self, call: Call, parts: Mapping[str, Scene]) -> None:
         """Raises ArchiveError, before anything is removed, where stored positions belong to another scene. On rank 0

@@ -31,6 +31,7 @@ from evolvent.run.study.results.study_table import (
     figure_columns,
     missing_figures,
     table_row,
+    warned_scenes,
     write_table,
 )
 from evolvent.run.study.scene_task import DONE, REFUSED, SceneTask
@@ -102,7 +103,7 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
             progress.stage(OUTPUT)
             folder.remove(str(path.relative_to(out)) for path in out.glob(PICTURES))
             rows, columns = table.write(folder)
-            said = [*table.said(), *missing_figures(rows, study.figures, _named(study), out)]
+            said = [*table.said(), *warned_scenes(rows), *missing_figures(rows, study.figures, _named(study), out)]
             drawn = draw(study_pictures(_values(study, rows, columns)), folder)
         return [*said, *drawn.failures]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.scene.scene import scene_from_text
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -89,20 +89,16 @@ def test_stiffness_is_per_face_width(run: RunData) -> None:
     assert friction_rows(plane)[0].secant_stiffness_N_per_mm_um == pytest.approx(wanted)
 
 
-def test_charted_flanks_have_no_secant_stiffness(run: RunData, tmp_path: Path) -> None:
-    """The same results of a pair with a charted pinion: what is missing of the flank is part of the transmission error
-    but no deflection, so that no secant is given, and JSON has null; the tangent is there all the same."""
-    gear, chart = run.pair.pinion, tmp_path / "worn.csv"
-    diameters = np.linspace(gear.root_form_diameter - 1.0, gear.tip_diameter + 1.0, 20)
-    chart.write_text("diameter_mm,depth_um\n" + "".join(f"{diameter},1.0\n" for diameter in diameters))
-    pinion = run.scene.pinion.model_copy(update={"flank_csv": str(chart)})
-    charted = replace(run, scene=run.scene.model_copy(update={"pinion": pinion}))
-    assert all(np.isfinite(row.secant_stiffness_N_per_mm_um) for row in friction_rows(run))
-    assert all(np.isnan(row.secant_stiffness_N_per_mm_um) for row in friction_rows(charted))
-    assert all(np.isfinite(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(charted))
-    write_tables(RunFolder(tmp_path), summary(charted, FACTS))
-    text = (tmp_path / "summary.json").read_text(encoding="utf-8")
-    assert json.loads(text)["frictions"][0]["secant_stiffness_N_per_mm_um"] is None
+def test_missing_material_is_no_deflection(tmp_path: Path) -> None:
+    """Problem: He's pair whose pinion lacks 2 µm everywhere by a chart, with transmission errors made up. Exact: the
+    secant is the force over what is beyond these 2 µm, as in excitation.csv, in rows of positions and of the pitch."""
+    chart = tmp_path / "worn.csv"
+    chart.write_text("diameter_mm,depth_um\n" + "".join(f"{diameter},2.0\n" for diameter in (120.0, 150.0, 170.0)))
+    charted = synthetic_run(f"pinion.flank_csv={chart}", file="demos/he2022.toml")
+    rows, force = position_rows(charted), 170e3 / charted.pair.pinion.base_radius / 20.0
+    wanted = [force / (row.transmission_error_um - 2.0) for row in rows]
+    assert [row.secant_stiffness_N_per_mm_um for row in rows] == pytest.approx(wanted, rel=1e-9)
+    assert friction_rows(charted)[0].secant_stiffness_N_per_mm_um == pytest.approx(np.mean(wanted))
 
 
 def test_plane_run_is_reported_for_the_whole_width() -> None:

@@ -51,8 +51,9 @@ def not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def run(folder: Path, text: str = TORQUES, overwrite: bool = False) -> list[str]:
-    """A study into folder/out."""
-    return run_study(study_of(folder, text), folder / "out", lambda: nullcontext(HERE), 1, overwrite, quiet=True)
+    """A study into folder/out, what it says but for the count of scenes with warnings, which coarse meshes have."""
+    said = run_study(study_of(folder, text), folder / "out", lambda: nullcontext(HERE), 1, overwrite, quiet=True)
+    return [each for each in said if "scenes have warnings" not in each]
 
 
 def test_table_has_a_row_a_scene(tmp_path: Path, computed: list[str]) -> None:

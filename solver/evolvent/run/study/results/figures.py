@@ -8,6 +8,7 @@ from dataclasses import fields
 from evolvent.dynamics.results.curves import LOADED, SECANT, TANGENT
 from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
 from evolvent.dynamics.results.tables import HARMONICS
+from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.dynamics.results.transient.rows import TRANSIENT
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.run.study.plan.study_file import StudyFile
@@ -96,13 +97,14 @@ def _of_strength() -> list[Figure]:
 
 
 def _of_transient() -> list[Figure]:
-    def over_cases(name: str, column: str, statistic: str = "max") -> Figure:
-        return Figure(name, TRANSIENT.name, column, statistic=statistic)
+    def over_cases(name: str, file: str, column: str) -> Figure:
+        return Figure(name, file, column, statistic="max", error=f"{column}{ERROR}")
 
     return [
-        over_cases("largest_mesh_force_N", "mesh_force_N"),
-        over_cases("transmission_error_peak_to_peak_um", "transmission_error_um", "peak_to_peak"),
-        over_cases("largest_pressure_MPa", "max_pressure_MPa"),
+        over_cases("largest_mesh_force_N", TRANSIENT.name, "mesh_force_N"),
+        over_cases("transmission_error_peak_to_peak_um", TRANSIENT_FACTS.name, "peak_to_peak_um"),
+        over_cases("largest_pressure_MPa", TRANSIENT_FACTS.name, "max_pressure_MPa"),
+        Figure("steady", TRANSIENT_FACTS.name, "steady", statistic="min"),
     ]
 
 
@@ -142,7 +144,7 @@ DEFAULTS: Mapping[str, tuple[str, ...]] = {
     "dynamics": ("largest_dynamic_factor", "largest_equivalent_amplitude_um", "natural_speed_rpm"),
     "strength": tuple(f"{gear}_{name}_MPa" for gear in ("pinion", "wheel") for name in ("tension", "compression",
                                                                                       "ISO_2006", "ISO_2019")),
-    "transient": ("largest_mesh_force_N", "transmission_error_peak_to_peak_um", "largest_pressure_MPa"),
+    "transient": ("largest_mesh_force_N", "transmission_error_peak_to_peak_um", "largest_pressure_MPa", "steady"),
     "fatigue": tuple(f"{gear}_{name}_MPa" for gear in ("pinion", "wheel") for name in ("contact_pressure", "dang_van")),
     "wear": ("pinion_deepest_um", "wheel_deepest_um", "worn_max_pressure_MPa",
              "worn_transmission_error_peak_to_peak_um"),

@@ -38,7 +38,8 @@ class Figure:
     column: str
     """Column of the CSV file, or key of the JSON file; dotted where it lies deeper."""
     rows: str = ""
-    """Key of the list in a JSON file whose entries are the rows; empty: the file itself is the only row."""
+    """Key of the list in a JSON file whose entries are the rows; empty: the file itself is this list or the only
+    row."""
     where: Mapping[str, str | int | float] = field(default_factory=dict)
     """Column -> value, by which the rows are selected."""
     statistic: str = ONLY
@@ -112,7 +113,7 @@ def _read(folder: Path, name: str, rows: str) -> list[Row]:
         content = json.loads(text)
     except (UnreadableText, OSError, ValueError, csv.Error, RecursionError):
         return []
-    listed = _deep(content, rows) if rows else [content]
+    listed = _deep(content, rows) if rows else content if isinstance(content, list) else [content]
     return [row for row in listed if isinstance(row, Mapping)] if isinstance(listed, list) else []
 
 

@@ -15,11 +15,11 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.table import csv_text
 from evolvent.run.study.plan.study_scenes import StudyScene
 from evolvent.run.study.results.gathering import Figure, Gathering
-from evolvent.run.study.results.scene_record import SCENES, SceneRecord, scene_folder
+from evolvent.run.study.results.scene_record import RECORD, SCENES, SceneRecord, scene_folder
 
 TABLE, PARQUET = "study.csv", "study.parquet"
-OWN = "status", "reason", "folder", "seconds"
-"""Columns behind the figures: status, reason, folder and time."""
+OWN = "status", "reason", "folder", "seconds", "warnings"
+"""Columns behind the figures: status, reason, folder, time and number of warnings."""
 WAITING, DONE = "waiting", "done"
 WRITERS = "pandas", "pyarrow"
 """Packages that write Parquet; Debian has no pyarrow."""
@@ -27,8 +27,8 @@ WRITERS = "pandas", "pyarrow"
 
 @dataclass(frozen=True)
 class TableRow:
-    """A row of study.csv: first the parameters, each by its key, then the figures, then status, reason, folder and
-    time."""
+    """A row of study.csv: first the parameters, each by its key, then the figures, then status, reason, folder, time
+    and number of warnings."""
 
     parameters: Mapping[str, Any]
     """Key of the scene -> value."""
@@ -43,11 +43,13 @@ class TableRow:
     """Folder of the scene, below that of the study."""
     seconds: float | None
     """Wall time of the scene."""
+    warnings: int | None = None
+    """Number of warnings of the computation, which study_scene.json has: read them before the figures are compared."""
 
     def flat(self, figures: Sequence[str]) -> dict[str, object]:
         """The row as it is written. figures: columns of all rows."""
         values = {name: self.figures.get(name, float("nan")) for name in figures}
-        own = dict(zip(OWN, (self.status, self.reason, self.folder, self.seconds)))
+        own = dict(zip(OWN, (self.status, self.reason, self.folder, self.seconds, self.warnings)))
         return {**{name: written(value) for name, value in self.parameters.items()}, **values, **own}
 
 
@@ -60,11 +62,12 @@ def table_row(scene: StudyScene, record: SceneRecord | None, out: Path, figures:
     """Row of a scene in the study's table. record: None where it is not computed yet."""
     if record is None:
         return TableRow(scene.parameters, {}, WAITING, "", "", None)
+    count = len(record.warnings)
     if record.status != DONE:
         where = f"{SCENES}/{record.name}" if scene_folder(out, record.name).exists() else ""
-        return TableRow(scene.parameters, {}, record.status, record.reason, where, record.seconds)
+        return TableRow(scene.parameters, {}, record.status, record.reason, where, record.seconds, count)
     found = Gathering(scene_folder(out, record.name)).columns(figures)
-    return TableRow(scene.parameters, found, DONE, "", f"{SCENES}/{record.name}", record.seconds)
+    return TableRow(scene.parameters, found, DONE, "", f"{SCENES}/{record.name}", record.seconds, count)
 
 
 def figure_columns(rows: Sequence[TableRow], figures: Sequence[Figure]) -> list[str]:
@@ -90,6 +93,18 @@ def missing_figures(rows: Sequence[TableRow], figures: Sequence[Figure], named: 
             count = f"{len(without)} of {len(done)} scenes"
             found.append(f"figure {figure.name}: no number in {count}, in {without[0].folder} for instance: {reason}")
     return found
+
+
+def warned_scenes(rows: Sequence[TableRow]) -> list[str]:
+    """A sentence on scenes that are done, with warnings; none where there are no such scenes."""
+    done = [row for row in rows if row.status == DONE]
+    warned = [row for row in done if row.warnings]
+    if not warned:
+        return []
+    return [
+        f"{len(warned)} of {len(done)} scenes have warnings, by their number in the column warnings of {TABLE}; read "
+        f"them before figures are compared, in {warned[0].folder}/{RECORD.name} for instance"
+    ]
 
 
 def _values(row: TableRow, name: str) -> list[float]:

@@ -86,6 +86,23 @@ def test_why_a_figure_is_missing(scene: Gathering, figure: Figure, why: str) -> 
     assert found.startswith(why) and bool(found) == bool(why)
 
 
+def test_transient_has_error_bars_and_says_whether_it_is_steady(tmp_path: Path) -> None:
+    """Problem: two speeds, one of them not steady. Exact: the largest figures of both, each with its error bar behind
+    it; 0 for steady; peak to peak of one motion, not from one speed to the other."""
+    keys = "steady", "peak_to_peak_um", "peak_to_peak_um_error", "max_pressure_MPa", "max_pressure_MPa_error"
+    facts = [dict(zip(keys, values)) for values in ((True, 2.0, 0.1, 900.0, 9.0), (False, 3.0, 0.2, 800.0, 8.0))]
+    (tmp_path / "transient.json").write_text(json.dumps(facts))
+    rows = "10,0.5,5,7", "20,0.6,7,9", "30,0.7,55,7", "25,0.6,58,8"
+    header = "mesh_force_N,mesh_force_N_error,transmission_error_um,max_pressure_MPa\n"
+    (tmp_path / "transient.csv").write_text(header + "\n".join(rows) + "\n")
+    named = {figure.name: figure for figure in CATALOGUE["transient"]}
+    assert Gathering(tmp_path).columns([named[name] for name in DEFAULTS["transient"]]) == {
+        "largest_mesh_force_N": 30.0, "largest_mesh_force_N_error": 0.7, "transmission_error_peak_to_peak_um": 3.0,
+        "transmission_error_peak_to_peak_um_error": 0.2, "largest_pressure_MPa": 900.0,
+        "largest_pressure_MPa_error": 9.0, "steady": 0.0,
+    }
+
+
 def test_a_link_out_of_the_folder_is_not_followed(tmp_path: Path) -> None:
     """A file of the scene's folder that is a link to another one elsewhere has no figures."""
     folder = tmp_path / "scene"

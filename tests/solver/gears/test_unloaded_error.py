@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.gear import GearParameters

@@ -151,7 +151,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
-        "gears.solution", "dynamics", "scene", "scene.schema", "results.*", "wear.*",
+        "gears.solution", "dynamics", "check", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
         "meshes.gears", "gears.problem", "gears.meshing", "gears.sweep", "scene.schema", "scene", "results.archive",
@@ -169,9 +169,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "check", "run",
     ),
     "run.kinds": (
-        "meshes.mesh", "meshes.gears", "fem.parallel", "gears", "gears.pressure",
-        "gears.solution", "scene", "scene.schema", "results.*", "check", "dynamics.*", "strength.*", "wear.results",
-        "run", "run.strength", "run.dynamics", "run.dynamics.transient",
+        "meshes.mesh", "meshes.gears", "fem.parallel", "gears", "gears.pressure", "gears.problem", "gears.solution",
+        "scene", "scene.schema", "results.*", "check", "dynamics.*", "strength.*", "wear.results", "run",
+        "run.strength", "run.dynamics", "run.dynamics.transient",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

@@ -1,4 +1,4 @@
-"""What `evolvent excitation` says of its figures: last lines, and a warning where error bars are large."""
+"""Sentences of `evolvent excitation` on its figures: last lines, and a warning where error bars are large."""
 
 from __future__ import annotations
 

@@ -86,8 +86,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.tables", "results.fields", "results.drawing",
     ),
     "results.solution": (
-        "meshes", "contact.problem", "contact.step", "gears", "gears.sweep", "gears.pressure", "gears.solution",
-        "results.drawing", "results.tables",
+        "meshes", "meshes.gears", "contact.problem", "contact.step", "gears", "gears.sweep", "gears.pressure",
+        "gears.solution", "results.drawing", "results.tables",
     ),
     "strength.standard": ("meshes", "meshes.gears"),
     "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
@@ -133,7 +133,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics.results.*", "results.tables", "results.drawing",
     ),
     "dynamics.solution": (
-        "meshes", "meshes.gears", "gears.problem", "gears", "gears.solution", "gears.sweep", "results.solution",
+        "meshes", "meshes.gears", "fem", "gears.problem", "gears", "gears.solution", "gears.sweep", "results.solution",
         "dynamics.oscillator", "dynamics.excitation", "dynamics", "dynamics.results", "dynamics.figures",
     ),
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),

@@ -44,7 +44,9 @@ class SolvedExcitation:
     def tables(self, loads: SceneTorques) -> list[Filled]:
         """Tables of the excitation."""
         scene, solved = loads.scene, (self.excitation, self.companion)
-        facts = excitation_facts(scene.title, scene.mesh.level, *solved, self.warnings)
+        pinion, wheel = (each.youngs_modulus for each in loads.problem.materials)
+        pair = loads.problem.pair
+        facts = excitation_facts(scene.title, scene.mesh.level, *solved, pair, (pinion, wheel), self.warnings)
         return [
             EXCITATION.of(excitation_rows(*solved)), HARMONICS.of(harmonic_rows(*solved)), EXCITATION_FACTS.of(facts)
         ]

@@ -53,7 +53,9 @@ def test_marks_at_one_point_do_not_hide_each_other() -> None:
     different methods differ in size; a smaller one lies above, and only the smallest is filled."""
     figure = root_stress_figure("a pair", [], formulas(0.0))
     marks = [line for line in figure.axes[0].get_lines() if line.get_marker() not in ("None", "")]
-    looks = {line.get_label(): (line.get_markersize(), line.get_zorder(), str(line.get_markerfacecolor())) for line in marks}
+    looks = {
+        line.get_label(): (line.get_markersize(), line.get_zorder(), str(line.get_markerfacecolor())) for line in marks
+    }
     by_size = sorted(looks.values(), reverse=True)
     assert len(by_size) >= 3 and len({size for size, _, _ in by_size}) == len(by_size)
     assert [order for _, order, _ in by_size] == sorted(order for _, order, _ in by_size)

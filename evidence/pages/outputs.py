@@ -94,7 +94,7 @@ FILES = (
     ("fatigue.csv", "`evolvent fatigue`: where each criterion is largest, a line per gear, coefficient and place"),
     ("fatigue_life.csv", "likewise: lives at several friction coefficients over that at the first"),
     ("fatigue_map.csv", "likewise: each criterion over the flank"),
-    ("fatigue_depth.csv", "likewise: each criterion below the point with the largest contact pressure"),
+    ("fatigue_depth.csv", "likewise: each criterion below the most loaded point away from the pitch line"),
     ("fatigue_section.csv", "likewise: Dang Van's criterion below all points at mid-face"),
     ("fatigue.json", "`evolvent fatigue`: what these figures rest on"),
     ("study.csv", "`evolvent study`: parameters and figures of each scene, [studies.md](studies.md)"),

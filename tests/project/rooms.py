@@ -121,7 +121,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.ring", "gears", "gears.contact", "gears.sweep", "dynamics.oscillator", "dynamics", "dynamics.modes",
     ),
     "dynamics.results": (
-        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.error_bars",
+        "meshes", "meshes.gears", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.error_bars",
         "results.tables", "gears.problem",
     ),
     "dynamics.results.transient": (

@@ -103,7 +103,8 @@ def plot(
 
         drawn = plot_folder(directory)
         warn(drawn.failures)
-        typer.echo(f"{len(drawn.written)} pictures in {directory / 'pictures'}")
+        count = len(drawn.written)
+        typer.echo(f"{count} picture{'' if count == 1 else 's'} in {directory / 'pictures'}")
 
 
 def wear_coefficient(

@@ -79,11 +79,18 @@ def _option_problem(error: Any, text: str, remedy: str) -> InputProblem:
         if error.option_name == "--resume":
             remedy = f"leave it out: {WITHOUT_RESUME.get(name, 'the command has nothing to go on from')}"
         else:
-            remedy = _meant(error.option_name, names) or remedy
+            remedy = _having(error.option_name, error.ctx) or _meant(error.option_name, names) or remedy
         return InputProblem(error.option_name, "an unknown option", allowed, remedy)
     if "requires" in text:
         return InputProblem(error.option_name, NOTHING, "a value behind the option", f"give one; {remedy}")
     return InputProblem(error.option_name, "a value", "the option alone", "leave the value out")
+
+
+def _having(option: str, context: Any) -> str:
+    """Remedy for an option that other commands have; empty where none has it. context: of the command."""
+    every = getattr(getattr(getattr(context, "parent", None), "command", None), "commands", {})
+    having = [name for name, each in every.items() if any(option in parameter.opts for parameter in each.params)]
+    return f"leave it out, or take a command that has it: evolvent {', '.join(having)}" if having else ""
 
 
 def _meant(name: str, names: list[str]) -> str:

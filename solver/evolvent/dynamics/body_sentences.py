@@ -45,6 +45,6 @@ def body_resonances(drive: Drive, slowest: float, fastest: float) -> list[str]:
     return [
         f"gear bodies: their own vibration of {drive.body_frequency:.0f} Hz on the mesh, with bores whose centres "
         f"cannot move, is left out. From {low:g} to {high:g} times {places} motion and forces are larger than "
-        "computed, the largest force of He's pair by up to 30 %; evolvent transient has it, whose dynamic_factor is "
-        "without the force of the damper"
+        "computed, by an amount that differs from pair to pair and has no bound; evolvent transient has it, whose "
+        "dynamic_factor is without the force of the damper"
     ]

@@ -294,7 +294,7 @@ def test_serial_commands_under_mpirun_run_once(out: Path, run_script: RunScript,
     """On two ranks: each is done once, by rank 0, and ends; each says what it says once."""
     done = run_script("-c", ALONE, "demos/he2022.toml", str(tmp_path / "a.msh"), str(out), ranks=2, timeout=100.0)
     assert done.returncode == 0, done.stderr
-    counts = [done.stdout.count(text) for text in ("evolvent 0.", "1 pictures in", "Hertz", "a.msh: ")]
+    counts = [done.stdout.count(text) for text in ("evolvent 0.", "1 picture in", "Hertz", "a.msh: ")]
     assert counts[:2] == [1, 1] and all(counts) and "[0, 0, 0, 2, 0]" in done.stdout
     assert done.stderr.count("found no such directory") == 1
     assert (out / "pictures/01_a.png").read_bytes() == b"a"

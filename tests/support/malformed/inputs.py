@@ -132,6 +132,10 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "run: empty folder after =": (["run", SCENE, "--out="], "--out", "an empty text", "where tables, fields and pict"),
     "run: empty scene": (["run", "", "--out", "{folder}/out"], "SCENE.toml", "an empty text", "the scene file"),
     "run: two scenes": (["run", SCENE, SCENE, "--out", "{folder}/out"], "arguments", "scene.toml", "leave it out"),
+    "run: option of other commands": (
+        ["run", SCENE, "--out", "OUT", "--percent", "50"], "--percent", "an unknown option",
+        "take a command that has it: evolvent loads, losses, excitation",
+    ),
     "run: unknown option": (["run", SCENE, "--levl", "quick"], "--levl", "an unknown option", "did you mean --level?"),
     "run: short option": (["run", SCENE, "-o", "out"], "-o", "an unknown option", "--out"),
     "run: flag with a value": (["run", SCENE, "--resume=yes"], "--resume", "a value", "leave the value out"),

@@ -24,6 +24,8 @@ Panels = tuple[Axes, Axes, Axes]
 """Axes of amplitude, dynamic factor and time out of contact."""
 MOST_FOLDS = 8
 """Speeds at which the branch turns back that the foot names."""
+DOUBTED = 0.35
+"""Opacity of curves where the bodies' own vibration makes motion and forces larger than computed."""
 BODIES = "#d9a441"
 """Colour of speeds near the bodies' own vibration."""
 NO_ISO = f"No {ISO}: it wants the deviations f_pb and f_fα of the gears."
@@ -102,9 +104,12 @@ def _draw_runs(panels: Panels, rows: Sequence[ResponseRow], branch: Sequence[Bra
     for way, colour, style in (("up", PINION, "-"), ("down", WHEEL, "--")):
         runs = [row for row in rows if row.way == way]
         speeds = np.array([row.speed_rpm for row in runs])
+        near = np.array([row.near_body_vibration for row in runs])
         columns = [(row.equivalent_amplitude_um, row.dynamic_factor, 100.0 * row.separated_share) for row in runs]
         for axes, values in zip(panels, np.array(columns).T):
-            axes.plot(speeds, values, style, color=colour, label=f"running {way}")
+            axes.plot(speeds, np.where(near, np.nan, values), style, color=colour, label=f"running {way}")
+            if near.any():
+                axes.plot(speeds, values, style, color=colour, alpha=DOUBTED, zorder=1.9)
             _mark_unrepeated(axes, speeds, values, runs)
         if way == "up":
             _draw_errors(panels[0], runs, "equivalent_amplitude_um")
@@ -208,7 +213,8 @@ def _draw_bodies(panels: Sequence[Axes], known: DriveSummary) -> list[str]:
     if not bands:
         return []
     return [
-        "Ochre: mesh harmonics excite the bodies' own vibration, which is left out; motion and forces are larger there."
+        "Ochre, and faint curves: mesh harmonics excite the bodies' own vibration, which is left out; motion and "
+        "forces are larger there."
     ]
 
 
@@ -219,9 +225,10 @@ def _draw_surface(axes: Axes, known: DriveSummary, rows: Sequence[ResponseRow]) 
         return []
     heaviest = max(row.dynamic_factor for row in rows) / share
     axes.axhline(heaviest, color=INK, lw=0.9, ls="-.", zorder=1)
+    axes.text(axes.get_xlim()[0], heaviest, " heaviest torque", va="bottom", color=INK, fontsize=8.0)
     return [
-        f"Dash-dotted: {heaviest:.3g}, the heaviest torque of the force surface; beyond it the mesh force goes on "
-        "straight. Heavier torques of the excitation reach further."
+        f"Dash-dotted: a factor of {heaviest:.3g}, which the heaviest torque of the force surface has; beyond it the "
+        "mesh force goes on straight. Heavier torques of the excitation reach further."
     ]
 
 

@@ -10,7 +10,9 @@ from scipy.optimize import minimize_scalar
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.results.curves import LOADED, CoarseExcitation, pitch_curves
+from evolvent.gears.problem.iso_stiffness import stiffnesses
 from evolvent.results.tables.table import Record
+from evolvent_meshes.gears.pair import GearPair
 
 LOADS = 400
 """Loads among which the least peak-to-peak value is sought before it is refined."""
@@ -43,6 +45,17 @@ class ExcitationFacts:
     design_to_Nm: float | None
     """Heaviest torque around the design torque whose peak-to-peak value is larger by no more than the error; null
     without error bars."""
+    mean_tangent_stiffness_N_per_mm_um: float
+    """Tangent mesh stiffness per mm of face width under the heaviest torque, mean over the pitch."""
+    mean_secant_stiffness_N_per_mm_um: float
+    """Secant mesh stiffness per mm of face width under the heaviest torque, mean over the pitch: to be compared with
+    iso_mesh_stiffness_N_per_mm_um, which is a secant of teeth on solid discs; this one has the torsion of both bodies
+    down to their bores, too."""
+    iso_single_stiffness_N_per_mm_um: float | None
+    """Single stiffness c' of ISO 6336-1:2006, clause 9, Method B, under the heaviest torque; null for profile shifts
+    that the standard's formula does not cover."""
+    iso_mesh_stiffness_N_per_mm_um: float | None
+    """Mesh stiffness c_γα of ISO 6336-1:2006, clause 9, Method B, under the heaviest torque; null likewise."""
     warnings: tuple[str, ...]
     """Sentences that a reader of the excitation has to know, as the command prints them."""
 
@@ -51,16 +64,23 @@ EXCITATION_FACTS = Record("excitation.json", ExcitationFacts)
 
 
 def excitation_facts(
-    title: str, level: str, excitation: MeshExcitation, companion: CoarseExcitation, warnings: Sequence[str] = ()
+    title: str, level: str, excitation: MeshExcitation, companion: CoarseExcitation, pair: GearPair,
+    moduli: tuple[float, float] | None = None, warnings: Sequence[str] = (),
 ) -> ExcitationFacts:
-    """Facts of an excitation. warnings: sentences on all of it."""
+    """Facts of an excitation. moduli: of both gears [MPa], None where they are not known. warnings: sentences on all of
+    it."""
     torques = tuple(1e-3 * float(torque) for torque in excitation.loaded.torques)
     count = len(excitation.unloaded_error)
     torque, size, error, lightest, heaviest = _design(excitation, companion)
+    per_width = 1e-3 / pair.face_width
+    heaviest_force = float(excitation.loaded.forces[-1])
+    single, mesh = (moduli and stiffnesses(pair, heaviest_force, moduli)) or (None, None)
     return ExcitationFacts(
         title=title, mesh_level=level, positions=count, torques_Nm=torques, design_torque_Nm=torque,
         design_peak_to_peak_um=size, design_peak_to_peak_um_error=error, design_from_Nm=lightest, design_to_Nm=heaviest,
-        warnings=tuple(warnings),
+        mean_tangent_stiffness_N_per_mm_um=per_width * float(np.mean(excitation.loaded.stiffness[:, -1])),
+        mean_secant_stiffness_N_per_mm_um=per_width * float(np.mean(excitation.secant[:, -1])),
+        iso_single_stiffness_N_per_mm_um=single, iso_mesh_stiffness_N_per_mm_um=mesh, warnings=tuple(warnings),
     )
 
 

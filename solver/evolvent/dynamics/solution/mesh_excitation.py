@@ -95,7 +95,7 @@ class GearExcitation:
         from evolvent.results.solution.user_files import save_picture
 
         title = f"Gear pair {self.pair.pinion.z}/{self.pair.wheel.z}"
-        facts = excitation_facts(title, "as condensed", self.mesh, NO_COMPANION)
+        facts = excitation_facts(title, "as condensed", self.mesh, NO_COMPANION, self.pair)
         return save_picture(path, excitation_picture(facts, excitation_rows(self.mesh), harmonic_rows(self.mesh)))
 
 

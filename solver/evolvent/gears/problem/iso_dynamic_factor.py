@@ -19,7 +19,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from evolvent.gears.problem.iso_stiffness import LIGHT, STEEL, mesh_stiffness, single_stiffness
+from evolvent.gears.problem.iso_stiffness import LIGHT, STEEL, line_load, mesh_stiffness, single_stiffness
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.input_checks import number, one_of, refuse
 
@@ -178,13 +178,13 @@ def method_b(
     force: K_A times the static force along the line of action in the transverse section [N].
     moduli: of both gears [MPa].
     """
-    line_load = force * math.cos(pair.pinion.transverse_pressure_angle) / pair.face_width
-    single = single_stiffness(pair, line_load, moduli)
+    load = line_load(pair, force)
+    single = single_stiffness(pair, load, moduli)
     mesh = mesh_stiffness(single, pair.transverse_contact_ratio)
     speed = 30000.0 / (math.pi * pair.pinion.z) * math.sqrt(mesh / (1e3 * mass / pair.face_width))
     relief = min(gear.modifications.tip_relief_um for gear in pair.gears)
     if accuracy.endurance is not None and all(gear.modifications.tip_relief_um == 0.0 for gear in pair.gears):
         relief = worn_relief(accuracy.endurance)
     return MethodB(
-        single, mesh, speed, line_load, pair.total_contact_ratio, pair.pinion.reference_diameter, relief, accuracy
+        single, mesh, speed, load, pair.total_contact_ratio, pair.pinion.reference_diameter, relief, accuracy
     )

@@ -74,6 +74,21 @@ def mesh_stiffness(single: float, transverse_contact_ratio: float) -> float:
     return single * (0.75 * transverse_contact_ratio + 0.25)
 
 
+def line_load(pair: GearPair, force: float) -> float:
+    """Line load K_A F_t/b [N/mm], F_t at the reference circle. force: K_A times the static force along the line of
+    action in the transverse section [N]."""
+    return force * math.cos(pair.pinion.transverse_pressure_angle) / pair.face_width
+
+
+def stiffnesses(pair: GearPair, force: float, moduli: tuple[float, float]) -> tuple[float, float] | None:
+    """Single and mesh stiffness c', c_γα [N/(mm µm)] of a pair under a force, as of `line_load`; None for a pair that
+    the formula is not made for."""
+    if outside_range(pair) is not None:
+        return None
+    single = single_stiffness(pair, line_load(pair, force), moduli)
+    return single, mesh_stiffness(single, pair.transverse_contact_ratio)
+
+
 def by_size(pair: GearPair) -> tuple[GearParameters, GearParameters]:
     """The standard's pinion and wheel: the gear with fewer teeth first, of equal ones that with the larger shift."""
     smaller, larger = sorted(pair.gears, key=lambda gear: (gear.z, -gear.profile_shift))

@@ -46,7 +46,9 @@ class SolvedExcitation:
     def tables(self, loads: SceneTorques, warnings: Iterable[str]) -> list[Filled]:
         """Tables of the excitation. warnings: that were known before it was computed."""
         scene, solved = loads.scene, (self.excitation, self.companion)
-        facts = excitation_facts(scene.title, scene.mesh.level, *solved, (*warnings, *self.warnings))
+        pinion, wheel = (each.youngs_modulus for each in loads.problem.materials)
+        pair, said = loads.problem.pair, (*warnings, *self.warnings)
+        facts = excitation_facts(scene.title, scene.mesh.level, *solved, pair, (pinion, wheel), said)
         return [
             EXCITATION.of(excitation_rows(*solved)), HARMONICS.of(harmonic_rows(*solved)), EXCITATION_FACTS.of(facts)
         ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,8 +23,8 @@ def plot_folder(out: Path) -> Drawn:
     Raises SceneError, ArchiveError, WriteError; FolderError where there is nothing to draw, or where something is
     computed into the folder.
     """
-    what = _finished(out)
-    with locked(out):
+    with locked(out) if os.path.isdir(out) else nullcontext():  # first, as a running call has not ended
+        what = _finished(out)
         drawn = draw(what.pictures(out), RunFolder(out))
         changed = changed_files(what, out)
         return replace(drawn, failures=(*drawn.failures, changed)) if changed else drawn

@@ -64,7 +64,9 @@ class LoadSection(SceneSection):
     mesh_torques_Nm: tuple[float, float] | None = key(
         "range of torques that the meshes are made for: elements small enough for the lightest one, fine flanks long "
         "enough for the heaviest; flanks with levels take as many as each torque needs; `evolvent loads` and "
-        "studies set it, `evolvent excitation` and `dynamics` take meshes for load.torque_Nm unless it is given",
+        "studies set it, `evolvent excitation` and `dynamics` take elements for load.torque_Nm unless it is given, and "
+        "flanks that are fine for the heaviest torque of their list: with another list figures differ, within their "
+        "error bars",
         "two ascending numbers above 0, the second one at least load.torque_Nm",
         "give the lightest and the heaviest torque, or delete the key: the mesh is then that of load.torque_Nm alone",
         default=None,

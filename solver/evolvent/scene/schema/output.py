@@ -12,7 +12,7 @@ from evolvent.scene.schema.section import SceneSection, as_tuple, key
 class OutputSection(SceneSection):
     """[output]: the results that are written beside the tables."""
 
-    pictures: bool = key("draw the PNG pictures", "true or false", default=True)
+    pictures: bool = key("draw the PNG pictures; the animation has a key of its own", "true or false", default=True)
     animation: bool = key("draw the animation", "true or false", default=True)
     fields: bool = key("write the fields for ParaView", "true or false", default=True)
     deformation: bool = key(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,8 +20,12 @@ from evolvent_meshes.gears.member import Member
 
 PROFILES = {VON_MISES: "-", ORTHOGONAL_SHEAR: "--", DANG_VAN: ":"}
 """Criteria over the depth, and the style of their lines."""
+Colour = str | tuple[float, ...]
 LEVELS, DEPTHS, SHOWN = 24, 201, 2.5
 """Colours, depths at which they are drawn, and the deepest in half-widths of the contact."""
+
+REVERSAL = "Hollow points, hatched: friction reverses nearby, so that the stress history, and the value, does not hold."
+"""Sentence at the foot of the picture where there are such points."""
 
 
 def fatigue_picture(
@@ -36,31 +41,37 @@ def fatigue_figure(
     title: str, facts: Sequence[FatigueFacts], over: Sequence[FatigueMapRow], section: Sequence[FatigueDepthRow],
     below: Sequence[FatigueDepthRow],
 ) -> Figure:
-    """The criterion of Dang Van over the pinion's flank and over the depth below mid-face, at the last friction
-    coefficient; three criteria below the most loaded point, at all.
+    """The criterion of Dang Van over the pinion's flank and over the depth below mid-face, at the first friction
+    coefficient, as tables compare with it; three criteria below the most loaded point, at all.
 
     title: of the scene. over: all over the flanks; section: below points at mid-face; below: below the most loaded one.
     """
-    last = over[-1].friction
+    first = over[0].friction
     points = [
         row for row in over
-        if (row.gear, row.friction, row.criterion) == (Member.PINION.label, last, DANG_VAN.name)
+        if (row.gear, row.friction, row.criterion) == (Member.PINION.label, first, DANG_VAN.name)
     ]
-    cut = [row for row in section if (row.gear, row.friction) == (Member.PINION.label, last)]
+    error = facts[0].largest_pressure_MPa_error / facts[0].largest_pressure_MPa
+    cut = [row for row in section if (row.gear, row.friction) == (Member.PINION.label, first)]
     largest = [max(row.at_surface, row.at_0_02, row.at_0_05, row.at_0_1, row.below) for row in points]
     scale = Normalize(0.0, max(*largest, *(row.value for row in cut)))
-    figure = sheet(f"{title}: contact fatigue", f"Dang Van's equivalent shear stress on the pinion, μ = {last:g}; "
-                   "right: criteria below the point with the largest contact pressure", (13.5, 5.0))
+    figure = sheet(f"{title}: contact fatigue", f"Dang Van's equivalent shear stress on the pinion, μ = {first:g}; "
+                   "right: criteria below the point with the largest contact pressure away from the pitch line",
+                   (13.5, 5.0))
     flank, depth, profiles = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 0.9))
-    _over_flank(flank, points, scale)
+    _over_flank(flank, points, scale, error)
     _section(depth, cut, float(np.median([row.half_width_mm for row in points])), scale)
+    _hatch_reversal(depth, points, sorted({row.diameter_mm for row in cut}))
     depth.set_title(f"{DANG_VAN.words}: below {'mid-face' if _has_width(points) else 'the flank'}", fontsize=10)
     for axes in (flank, depth):
         axes.axhline(facts[0].pinion_pitch_diameter_mm, color=FAINT, lw=0.8, ls="--")
     figure.colorbar(ScalarMappable(scale, PRESSURE_MAP), ax=depth, label=f"{DANG_VAN.words} [MPa]")
-    _below(profiles, [row for row in below if row.gear == Member.PINION.label])
+    _below(profiles, [row for row in below if row.gear == Member.PINION.label], error)
+    band = f"Bands: estimated error by the contact pressure, {100.0 * error:.2g} % at μ = {first:g}."
     foot(
         figure,
+        *([REVERSAL] if any(row.near_friction_reversal for row in points) else []),
+        *([band] if np.isfinite(error) else []),
         "Elastic half-plane under the pressures and friction of the contact solution, one passage. Points in the zones "
         "of tip edges, where pressure is singular, are left out. Dashed line: pitch circle.",
     )
@@ -72,19 +83,41 @@ def _has_width(points: Sequence[FatigueMapRow]) -> bool:
     return len({row.height_mm for row in points}) > 1
 
 
-def _over_flank(axes: Axes, points: Sequence[FatigueMapRow], scale: Normalize) -> None:
+def _over_flank(axes: Axes, points: Sequence[FatigueMapRow], scale: Normalize, error: float) -> None:
     """Dang Van's criterion, the largest below the surface, over face and diameter; over the diameter alone in plane
-    strain."""
+    strain. Points near which friction reverses are hollow. error: relative; NaN where it is not known."""
     columns = [(row.height_mm, row.diameter_mm, row.below) for row in points]
     height, diameter, values = np.array(columns).T
+    doubtful = np.array([row.near_friction_reversal for row in points])
+    hollow = {"mfc": "white", "mec": PINION, "ls": "none", "ms": 6.0, "zorder": 3}
     axes.set_title(f"{DANG_VAN.words}: largest below {DEEP:g} half-widths", fontsize=10)
     axes.set_ylabel("diameter of the pinion [mm]")
     if _has_width(points):
         axes.tricontourf(height, diameter, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
+        axes.plot(height[doubtful], diameter[doubtful], "o", **hollow)
         axes.set_xlabel("face [mm]")
     else:
         axes.plot(values, diameter, color=PINION, marker=".")
+        axes.plot(values[doubtful], diameter[doubtful], "o", **hollow)
+        _band(axes, values, diameter, error, PINION)
         axes.set_xlabel(f"{DANG_VAN.words} [MPa]")
+
+
+def _band(axes: Axes, values: Floats, places: Floats, error: float, colour: Colour) -> None:
+    """Band of a relative error around values (n,) at places (n,); none where the error is not known."""
+    if np.isfinite(error):
+        axes.fill_betweenx(places, values * (1.0 - error), values * (1.0 + error), color=colour, alpha=0.2, lw=0.0)
+
+
+def _hatch_reversal(axes: Axes, points: Sequence[FatigueMapRow], diameters: Sequence[float]) -> None:
+    """Hatches the section about the points near which friction reverses, half-way to the next ones. diameters: of all
+    its points, ascending."""
+    near = {row.diameter_mm for row in points if row.near_friction_reversal}
+    middles = [0.5 * (one + other) for one, other in pairwise(diameters)]
+    limits = [diameters[0], *middles, diameters[-1]]
+    for diameter, (low, high) in zip(diameters, pairwise(limits)):
+        if diameter in near:
+            axes.axhspan(low, high, facecolor="none", edgecolor="white", hatch="///", lw=0.0)
 
 
 def _section(axes: Axes, rows: Sequence[FatigueDepthRow], half_width: float, scale: Normalize) -> None:
@@ -106,14 +139,17 @@ def _levels(scale: Normalize) -> Floats:
     return np.linspace(0.0, float(scale.vmax or 1.0), LEVELS + 1)
 
 
-def _below(axes: Axes, rows: Sequence[FatigueDepthRow]) -> None:
-    """Criteria over the depth, a colour a friction coefficient."""
+def _below(axes: Axes, rows: Sequence[FatigueDepthRow], error: float) -> None:
+    """Criteria over the depth, a colour a friction coefficient. error: relative, at the first of them."""
     frictions = list(dict.fromkeys(row.friction for row in rows))
     for friction, colour in zip(frictions, friction_colours(frictions)):
         shown = [row for row in rows if row.friction == friction and row.depth_over_half_width <= SHOWN]
         for criterion, style in PROFILES.items():
             own = [row for row in shown if row.criterion == criterion.name]
-            axes.plot([row.value for row in own], [row.depth_um for row in own], style, color=colour)
+            values, depths = np.array([(row.value, row.depth_um) for row in own]).T
+            axes.plot(values, depths, style, color=colour)
+            if friction == frictions[0]:
+                _band(axes, values, depths, error, colour)
         axes.plot([], [], color=colour, label=f"μ = {friction:g}")
     for criterion, style in PROFILES.items():
         axes.plot([], [], style, color=FAINT, label=criterion.words)

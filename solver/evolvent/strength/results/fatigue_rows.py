@@ -137,8 +137,9 @@ class FatigueMapRow:
 
 @dataclass(frozen=True)
 class FatigueDepthRow:
-    """A line of fatigue_depth.csv: a criterion below the point of a flank with the largest contact pressure; and of
-    fatigue_section.csv, Dang Van's below the points of a flank at the height nearest to mid-face."""
+    """A line of fatigue_depth.csv: a criterion below the point of a flank with the largest contact pressure, of those
+    that friction does not reverse near (near_friction_reversal of fatigue.csv); and of fatigue_section.csv, Dang Van's
+    below the points of a flank at the height nearest to mid-face."""
 
     gear: str
     """pinion or wheel."""

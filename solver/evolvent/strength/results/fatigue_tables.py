@@ -12,7 +12,7 @@ from evolvent.strength.fatigue.criterion import BELOW, DANG_VAN, NEAR_SURFACE, S
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
 from evolvent.strength.results.fatigue_rows import FatigueDepthRow, FatigueLifeRow, FatigueMapRow, FatigueRow
 from evolvent.strength.results.friction_fatigue import FrictionFatigue, changes, compared_point
-from evolvent.strength.results.friction_reversal import near_reversal
+from evolvent.strength.results.friction_reversal import near_reversal, passes_pitch_line
 from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -67,12 +67,16 @@ def map_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[Fatig
 
 
 def depth_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[FatigueDepthRow]:
-    """Rows of fatigue_depth.csv of both gears, at all friction coefficients."""
+    """Rows of fatigue_depth.csv of both gears, at all friction coefficients. Points about the pitch line are left out
+    at each of them if one is above 0, so that like points are compared."""
+    rubbing = any(each.friction for each in found)
     for each in found:
         for member, own in zip(Member, each.gears):
             if not len(own.loads.peak):
                 continue
-            top = int(np.argmax(own.loads.peak))
+            reverses = near_reversal(pair, member, own.loads, each.friction)
+            reverses |= rubbing & passes_pitch_line(pair, member, own.loads)
+            top = int(np.argmax(np.where(reverses & ~reverses.all(), 0.0, own.loads.peak)))
             for criterion in own.values:
                 yield from _below(pair, member, each, criterion, top)
 

@@ -23,12 +23,17 @@ def flank_distance(pair: GearPair, member: Member, roll_distance: Floats) -> Flo
     return np.asarray((radius**2 - at_pitch**2) / (2.0 * pair.gears[member].base_radius))
 
 
+def passes_pitch_line(pair: GearPair, member: Member, loads: FlankLoads) -> Bools:
+    """Points (n,) that lie within two half-widths of the contact as this passes the pitch line, where sliding reverses.
+    """
+    across = flank_distance(pair, member, loads.roll_distance) * np.cos(pair.gears[member].base_helix_angle)
+    return np.asarray(np.abs(across) < REACH * loads.half_width)
+
+
 def near_reversal(pair: GearPair, member: Member, loads: FlankLoads, friction: float) -> Bools:
     """Points (n,) whose history, that of the friction of one position, does not hold: the contact passes the pitch
     point, where sliding reverses, while it is within two half-widths of the point; or the slice does not slide as a
     whole. None without friction. friction: μ."""
     if friction == 0.0:
         return np.zeros(len(loads.peak), dtype=bool)
-    across = flank_distance(pair, member, loads.roll_distance) * np.cos(pair.gears[member].base_helix_angle)
-    passes = np.abs(across) < REACH * loads.half_width
-    return np.asarray(passes | (loads.friction < SLIDES * friction))
+    return np.asarray(passes_pitch_line(pair, member, loads) | (loads.friction < SLIDES * friction))

@@ -14,6 +14,8 @@ from evolvent_meshes.gears.member import Member
 
 MARKS = {"ISO": "s", "equal": "o", "Pedrero": "D"}
 """First word of a method -> its marker."""
+SIZES = {f"{STANDARD}2006": 12.5, "equal": 10.0, "Pedrero": 6.0, f"{STANDARD}2019": 3.0}
+"""Beginning of a method -> size of its marker: on a spur pair several lie at one point, the larger ones below."""
 LINES: dict[str, str] = {f"{STANDARD}2006": ":", f"{STANDARD}2019": "-."}
 """Method of the standard -> style of its line."""
 
@@ -60,9 +62,10 @@ def _formulas(axes: Axes, rows: Sequence[StrengthRow]) -> None:
         if np.isnan(row.tooth_rotation_deg):
             axes.axhline(row.stress_MPa, color=INK, lw=0.9, ls=LINES[row.method], label=row.method)
         else:
-            filled = INK if row.method == f"{STANDARD}2019" or word == "Pedrero" else "none"
-            axes.plot(row.tooth_rotation_deg, row.stress_MPa, MARKS[word], mfc=filled, mec=INK, ms=5.5,
-                      label=row.method.split(",")[0], ls="none")
+            filled = INK if row.method == f"{STANDARD}2019" else "none"
+            size = next(size for name, size in SIZES.items() if row.method.startswith(name))
+            axes.plot(row.tooth_rotation_deg, row.stress_MPa, MARKS[word], mfc=filled, mec=INK, ms=size,
+                      zorder=4.0 - 0.1 * size, label=row.method.split(",")[0], ls="none")
 
 
 def _named(axes: Sequence[Axes]) -> tuple[list[object], list[str]]:

@@ -15,13 +15,14 @@ from matplotlib.figure import Figure
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
-from evolvent.dynamics.figures.response import BODIES, ISO, response_figure
+from evolvent.dynamics.figures.response import BODIES, DOUBTED, ISO, response_figure
 from evolvent.dynamics.oscillator.mesh_speed import speeds_to_periods
 from evolvent.dynamics.oscillator.speed_sweep import sweep_speeds
 from evolvent.dynamics.pair_model import DriveSettings, drive
 from evolvent.dynamics.results.response import branch_rows, largest_force, response_rows, responses, summary
 from evolvent.dynamics.results.response_errors import Vibration, VibrationErrors, vibration_errors
 from evolvent.gears.problem.iso_dynamic_factor import Accuracy, method_b
+from evolvent.results.drawing.style import PINION, WHEEL
 from evolvent.scene.gear_problem import gear_problem
 from tests.support.gear_cases import spur_scene
 
@@ -32,9 +33,9 @@ BARS = np.array([1e-4, 2e-4, 3e-4, 2e-4, 1e-4])
 """Of the amplitude [mm]."""
 
 
-def drawn(known: bool, accuracy: Accuracy = DEVIATING, **changed: Any) -> Figure:
-    """Running through five speeds, with an error or without, on gears of an accuracy. changed: keys of dynamics.json.
-    """
+def drawn(known: bool, accuracy: Accuracy = DEVIATING, near: float = np.inf, **changed: Any) -> Figure:
+    """Running through five speeds, with an error or without, on gears of an accuracy. near: speed from which on rows
+    are near the bodies' vibration. changed: keys of dynamics.json."""
     pair, forces = gear_problem(spur_scene()).pair, np.array([LOAD, 2.0 * LOAD])
     error, stiffness = 2e-4 * np.cos(2.0 * np.pi * np.arange(8) / 8), np.full((8, 2), 3e5)
     angles = 2.0 * np.pi / 50.0 * np.arange(8) / 8
@@ -48,7 +49,8 @@ def drawn(known: bool, accuracy: Accuracy = DEVIATING, **changed: Any) -> Figure
         errors = replace(errors, amplitude=both, dynamic_factor={way: 1e3 * bars for way, bars in both.items()})
     iso = method_b(pair, vibrating.model.mass, LOAD, accuracy, (2.1e5, 2.1e5))
     facts = summary(vibrating, SETTINGS, swept, largest_force(found), 2.0 * LOAD, iso, errors)
-    rows = list(response_rows(vibrating, swept, found, iso, errors))
+    every = response_rows(vibrating, swept, found, iso, errors)
+    rows = [replace(row, near_body_vibration=row.speed_rpm >= near) for row in every]
     return response_figure(replace(facts, **changed), rows, list(branch_rows(vibrating, swept)))
 
 
@@ -111,6 +113,17 @@ def test_speeds_near_the_bodies_vibration_are_shaded() -> None:
     assert "the bodies' own vibration" in words(figure)
     rigid = drawn(False)
     assert not any(map(spans, rigid.axes)) and "own vibration" not in words(rigid)
+
+
+def test_curves_near_the_bodies_vibration_are_faint() -> None:
+    """From 5000 r/min on, of 3000 to 6000: curves of both ways end before, and go on faint. All full without."""
+    for axes in drawn(False, near=5000.0).axes:
+        for colour in (PINION, WHEEL):
+            full, faint = (line for line in axes.lines if line.get_color() == colour)
+            trusted = np.isfinite(np.asarray(full.get_ydata(), dtype=float))
+            assert (np.asarray(full.get_xdata())[trusted] < 5000.0).all() and trusted.any()
+            assert np.isfinite(np.asarray(faint.get_ydata(), dtype=float)).all() and faint.get_alpha() == DOUBTED
+    assert not any(line.get_alpha() == DOUBTED for axes in drawn(False).axes for line in axes.lines)
 
 
 def test_forces_beyond_the_force_surface_are_marked() -> None:

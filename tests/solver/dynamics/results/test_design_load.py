@@ -13,6 +13,9 @@ from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
 from evolvent.dynamics.results.design_load import EXCITATION_FACTS, ExcitationFacts, excitation_facts
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.pair import GearPair
+from tests.support.gear_cases import spur_scene
 
 RADIUS, STIFFNESS, DESIGN = 70.0, 400e3, 1730.0
 COSINE = np.cos(2.0 * np.pi * np.arange(24) / 24)
@@ -32,7 +35,7 @@ def mesh(size: float = 2e-3, forces: tuple[float, ...] = (500.0, 1000.0, 1500.0,
 
 
 def facts(excitation: MeshExcitation, companion: CoarseExcitation = NO_COMPANION) -> ExcitationFacts:
-    return excitation_facts("a mesh", "quick", excitation, companion)
+    return excitation_facts("a mesh", "quick", excitation, companion, spur_scene().gear_pair(), (206e3, 206e3))
 
 
 def test_design_load_between_torques() -> None:
@@ -42,6 +45,26 @@ def test_design_load_between_torques() -> None:
     assert found.design_peak_to_peak_um == pytest.approx(0.0, abs=1e-4)
     assert found.design_peak_to_peak_um_error is None and found.design_from_Nm is None
     assert found.torques_Nm == pytest.approx((35.0, 70.0, 105.0, 140.0, 175.0))
+
+
+def test_stiffness_stands_beside_that_of_the_standard() -> None:
+    """Exact: means over the pitch under 2500 N, of 20 mm of face; softness (1 + a cos τ)/k has mean stiffness
+    k/√(1 − a²). He's pair has c' = 14.05 and c_γα = 22.01 N/(mm·µm) (docs/he2022.md). Gears that the formula is not
+    for, shifted by −0.2 on the smaller and 0 on the larger one, have none."""
+    found, share = facts(mesh()), 2e-3 * STIFFNESS / DESIGN
+    mean = 1e-3 * STIFFNESS / 20.0 / np.sqrt(1.0 - share**2)
+    assert found.mean_tangent_stiffness_N_per_mm_um == pytest.approx(mean, rel=1e-6)
+    assert found.mean_secant_stiffness_N_per_mm_um == pytest.approx(mean, rel=1e-6)
+    assert found.iso_single_stiffness_N_per_mm_um == pytest.approx(14.05, abs=0.01)
+    assert found.iso_mesh_stiffness_N_per_mm_um == pytest.approx(22.01, abs=0.01)
+    small, large = (
+        GearParameters.from_rack(z=z, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0,
+                                 bore_diameter=40.0, profile_shift=x)
+        for z, x in ((40, -0.2), (60, 0.0))
+    )
+    shifted = GearPair(small, large, 149.5)
+    none = excitation_facts("a mesh", "quick", mesh(), NO_COMPANION, shifted, (206e3, 206e3))
+    assert none.iso_mesh_stiffness_N_per_mm_um is None and none.iso_single_stiffness_N_per_mm_um is None
 
 
 def test_range_within_the_error() -> None:

@@ -16,6 +16,7 @@ from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
 from evolvent.dynamics.results.transient.rows import TRANSIENT, TRANSIENT_TEETH
 from evolvent.results.archive.run_cost import Cost, write_cost
 from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_lock import locked
 from evolvent.results.archive.scene_files import write_scene
 from evolvent.results.drawing.table_pictures import TablePicture
 from evolvent.run.kinds.all import KINDS, Kind
@@ -47,7 +48,7 @@ def test_picture_is_drawn_again(out: Path, capsys: pytest.CaptureFixture[str]) -
     before = {path: path.read_bytes() for path in out.iterdir() if path.suffix in (".csv", ".toml")}
     assert main(["plot", str(out)]) == 0
     assert (out / "pictures/transient.png").stat().st_size > 10_000
-    assert "1 pictures in" in capsys.readouterr().out
+    assert "1 picture in" in capsys.readouterr().out
     assert {path: path.read_bytes() for path in before} == before
 
 
@@ -72,6 +73,14 @@ def test_unfinished_command_is_named(tmp_path: Path, kind: Kind) -> None:
     remedy = f"run `evolvent {kind.command} SCENE.toml --out {tmp_path} --resume`"
     with pytest.raises(FolderError, match=re.escape(remedy)):
         plot_folder(tmp_path)
+
+
+def test_folder_of_a_running_call_is_locked(tmp_path: Path) -> None:
+    """A command has begun, and still runs: plot says that, not that the command is to be resumed."""
+    write_cost(RunFolder(tmp_path), Cost(command="losses"))
+    with locked(tmp_path), pytest.raises(FolderError, match="no other run computes into, found process") as refused:
+        plot_folder(tmp_path)
+    assert "--resume" not in str(refused.value)
 
 
 def test_folder_of_an_earlier_version_is_named(tmp_path: Path) -> None:

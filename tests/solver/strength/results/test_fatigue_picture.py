@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
@@ -31,7 +32,10 @@ def drawn() -> Figure:
     )
     own, pair = flank_fatigue(loads, 0.1, DEPTHS, STEEL), spur_scene().gear_pair()
     found = [FrictionFatigue(0.1, (own, own), math.nan)]
-    facts = [made(FatigueFacts, pinion_pitch_diameter_mm=pair.working_pitch_diameters[0])]
+    facts = [made(
+        FatigueFacts, friction=0.1, largest_pressure_MPa=1500.0, largest_pressure_MPa_error=75.0,
+        pinion_pitch_diameter_mm=pair.working_pitch_diameters[0],
+    )]
     over, section, below = list(map_rows(pair, found)), list(section_rows(pair, found)), list(depth_rows(pair, found))
     return fatigue_figure("a pair", facts, over, section, below)
 
@@ -44,6 +48,21 @@ def test_every_panel_names_its_criterion() -> None:
     assert colours.get_ylabel() == f"{DANG_VAN.words} [MPa]"
     legend = below.get_legend()
     assert legend is not None and DANG_VAN.words in [text.get_text() for text in legend.get_texts()]
+
+
+def test_points_near_reversal_are_hollow() -> None:
+    """Problem: five points at −3 to 3 mm from the pitch point, contacts 0.1 mm wide. Exact: only the one at the pitch
+    point is hollow, the section is hatched there, the foot says why, and curves have a band of ±5 %."""
+    figure = drawn()
+    over, section, below, _ = figure.axes
+    full, hollow = over.lines[:2]
+    assert len(full.get_xdata()) == COUNT and len(hollow.get_xdata()) == 1
+    assert hollow.get_ydata()[0] == full.get_ydata()[COUNT // 2]
+    assert [patch.get_hatch() for patch in section.patches] == ["///"]
+    assert any("does not hold" in text.get_text() for text in figure.texts)
+    band = over.collections[0].get_paths()[0].vertices
+    assert band[:, 0].max() == pytest.approx(1.05 * max(full.get_xdata()))
+    assert len(below.collections) == 3
 
 
 def test_nothing_is_coloured_as_above_the_scale() -> None:

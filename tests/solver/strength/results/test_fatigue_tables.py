@@ -217,6 +217,21 @@ def test_depths_below_the_most_loaded_point() -> None:
     assert [row.criterion for row in rows].count("tension") == 2
 
 
+def test_depths_are_below_a_point_whose_history_holds() -> None:
+    """Problem: a pinion's flank with the largest pressure at the pitch line. Exact: with a friction coefficient above 0
+    the depths lie below the most loaded of the other points, at μ = 0 too; without any below the most loaded of all."""
+    made = [
+        FrictionFatigue(μ, (flank([800.0, 1000.0, 900.0], SHEAR, np.zeros(3)),) * 2, math.nan)
+        for μ in (0.0, 0.2)
+    ]
+    pitch, beyond = diameters(PAIR, Member.PINION, np.array([0.0, 3.0]))
+    for found, wanted in ((made, beyond), (made[:1], pitch)):
+        rows = [row for row in depth_rows(PAIR, found) if row.gear == "pinion"]
+        assert {row.diameter_mm for row in rows} == {wanted} and {row.friction for row in rows} == {
+            each.friction for each in found
+        }
+
+
 def test_flanks_without_any_point() -> None:
     """All values are unknown, no line over flank or depth."""
     nothing = flank([], [], np.zeros(0))

@@ -46,3 +46,17 @@ def test_formulas_are_told_apart(helix_angle: float) -> None:
         stresses = [line.get_ydata()[0] for line in figure.axes[0].get_lines() if line.get_label().startswith("ISO")]
         assert stresses == pytest.approx([row.stress_MPa for row in rows if row.gear == "pinion"])
         assert not any(np.isnan(stresses))
+
+
+def test_marks_at_one_point_do_not_hide_each_other() -> None:
+    """Problem: a spur pair, where both editions and equal shares have a stress at one rotation. Exact: markers of
+    different methods differ in size; a smaller one lies above, and only the smallest is filled."""
+    figure = root_stress_figure("a pair", [], formulas(0.0))
+    marks = [line for line in figure.axes[0].get_lines() if line.get_marker() not in ("None", "")]
+    looks = {
+        line.get_label(): (line.get_markersize(), line.get_zorder(), str(line.get_markerfacecolor())) for line in marks
+    }
+    by_size = sorted(looks.values(), reverse=True)
+    assert len(by_size) >= 3 and len({size for size, _, _ in by_size}) == len(by_size)
+    assert [order for _, order, _ in by_size] == sorted(order for _, order, _ in by_size)
+    assert {filled for _, _, filled in by_size[:-1]} == {"none"} and by_size[-1][2] != "none"

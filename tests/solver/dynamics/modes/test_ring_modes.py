@@ -78,7 +78,7 @@ def test_moment_of_inertia(kind: str) -> None:
     for member, body in zip(Member, bodies(kind)):
         found = three(kind, member)
         width = body.gear.face_width if body.d == 2 else 1.0
-        exact = polar_moment(body.gear, 7850.0) / width
+        exact = polar_moment(body.gear, 7.85e-9) / width
         assert found.moment_of_inertia == pytest.approx(exact, rel=1e-3 if body.mesh.order == 2 else 2e-2)
         assert not found.spun[found.modes.harmonic > 0].any()
         assert 0.3 < float(found.spun @ found.spun) / found.moment_of_inertia < 1.0

@@ -30,9 +30,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "contact.step": (
         "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
     ),
-    "contact.solution": (
-        "meshes", "meshes.mesh", "fem", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
-    ),
+    "contact.solution": ("meshes", "meshes.mesh", "fem", "contact.problem", "contact.step"),
     "contact.transient.time_schemes": ("meshes",),
     "contact.transient": (
         "meshes", "fem", "contact.newton", "contact.problem", "contact.step", "contact.transient.time_schemes",

@@ -16,6 +16,7 @@ import scipy.sparse as sp
 import ufl
 from dolfinx import fem
 
+from evidence.verification.references.full_system import FullContact
 from evolvent import (
     Body,
     Contact,
@@ -33,7 +34,6 @@ from evolvent import (
 from evolvent.contact.nitsche.contact_operator import sandwiched
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.nitsche.flux_recovery import nitsche_traction
-from evolvent.contact.solution.full_system import FullContact
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.surface import surface_of
 from evolvent_meshes.arrays import Floats, Ints

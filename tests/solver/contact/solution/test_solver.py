@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from evidence.verification.references.full_system import full_solution
 from evolvent import (
     Body,
     Contact,
@@ -31,7 +32,6 @@ from evolvent import (
     solve,
     sweep,
 )
-from evolvent.contact.solution.full_system import full_solution
 from evolvent_meshes.shapes.blocks import rectangle
 from tests.support.checkout import ROOT
 from tests.support.contact_cases import FRICTION, cylinder

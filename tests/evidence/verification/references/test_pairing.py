@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from evidence.verification.references.pairing import pair_surfaces_slowly
 from evolvent.contact.search.pairing import Pairing, pair_surfaces
-from evolvent.contact.search.pairing_reference import pair_surfaces_slowly
 from evolvent.fem.reference_facets import hats
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats
@@ -42,7 +42,7 @@ def test_pairing_is_invariant_under_a_common_rigid_motion(first: Kind, second: K
 
 @pytest.mark.parametrize(("first", "second"), [(QUAD2, QUAD2), (TRI2, QUAD1), (QUAD1, TRI2)])
 def test_pairing_agrees_with_the_reference_in_3d(first: Kind, second: Kind) -> None:
-    """Same integrals of gap and partners as pairing_reference.py, pair of facets by pair.
+    """Same integrals of gap and partners as the reference, pair of facets by pair.
 
     To 1e-9: the triangles may differ, and the rule of degree 8 is not exact on curved facets.
     """

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evidence.verification.references.full_system import FullContact, full_equilibrium, full_solution
 from evolvent import Freedom, Nitsche, Placement, Problem, Solution, Step, StepSystem, condense_bodies
 from evolvent.contact.nitsche.coulomb import coulomb
-from evolvent.contact.solution.full_system import FullContact, full_equilibrium, full_solution
 from evolvent_meshes.arrays import Floats
 from tests.support.contact_cases import ball, cylinder
 from tests.support.running.samples import sampled

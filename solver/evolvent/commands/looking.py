@@ -51,9 +51,10 @@ def check(
             _require_new(out, ".png", overwrite)
         typer.echo(overview(loaded))
         if out is not None:
-            from evolvent.results.drawing.tooth_form import tooth_form_picture
+            from evolvent.results.drawing.style import drawn
+            from evolvent.results.drawing.tooth_form import tooth_form_figure
 
-            write_bytes(out, tooth_form_picture(loaded.title, loaded.gear_pair()))
+            write_bytes(out, drawn(tooth_form_figure, loaded.title, loaded.gear_pair()))
             typer.echo(f"\nTooth forms: {out}")
 
 

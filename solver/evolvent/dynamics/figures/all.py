@@ -17,25 +17,25 @@ from evolvent.results.tables.table import SCENE_TITLE, SceneValue
 
 FIGURES = "evolvent.dynamics.figures"
 EXCITATION_PICTURE = TablePicture(
-    "excitation.png", (EXCITATION_FACTS, EXCITATION, HARMONICS), f"{FIGURES}.excitation:excitation_picture"
+    "excitation.png", (EXCITATION_FACTS, EXCITATION, HARMONICS), f"{FIGURES}.excitation:excitation_figure"
 )
 VIBRATION_PICTURES = (
-    TablePicture("vibration.png", (DYNAMICS, RESPONSE, BRANCH), f"{FIGURES}.response:response_picture"),
-    TablePicture("waterfall.png", (DYNAMICS, SPECTRUM), f"{FIGURES}.waterfall:waterfall_picture"),
-    TablePicture("histories.png", (DYNAMICS, HISTORIES), f"{FIGURES}.histories:histories_picture"),
-    TablePicture("torque_map.png", (TORQUE_MAP,), f"{FIGURES}.torque_map:torque_map_picture"),
+    TablePicture("vibration.png", (DYNAMICS, RESPONSE, BRANCH), f"{FIGURES}.response:response_figure"),
+    TablePicture("waterfall.png", (DYNAMICS, SPECTRUM), f"{FIGURES}.waterfall:waterfall_figure"),
+    TablePicture("histories.png", (DYNAMICS, HISTORIES), f"{FIGURES}.histories:histories_figure"),
+    TablePicture("torque_map.png", (TORQUE_MAP,), f"{FIGURES}.torque_map:torque_map_figure"),
 )
 OPERATION_PICTURE = TablePicture(
     "30_mesh_force.png",
     (OPERATION, HISTORIES, EXCITATION, SceneValue("scene.toml", "dynamics.series_stiffness_N_per_um")),
-    f"{FIGURES}.operation:operation_picture",
+    f"{FIGURES}.operation:operation_figure",
 )
 TRANSIENT_PICTURES = (
     TablePicture(
         "transient.png", (SCENE_TITLE, TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS),
-        f"{FIGURES}.transient:transient_picture",
+        f"{FIGURES}.transient:transient_figure",
     ),
     TablePicture(
-        "transient_start.png", (SCENE_TITLE, TRANSIENT_START), f"{FIGURES}.transient_start:start_picture"
+        "transient_start.png", (SCENE_TITLE, TRANSIENT_START), f"{FIGURES}.transient_start:start_figure"
     ),
 )

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from evolvent.dynamics.results.curves import LOADED, UNLOADED
 from evolvent.dynamics.results.design_load import ExcitationFacts
 from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
-from evolvent.results.drawing.style import INK, foot, png, sheet, styled, torque_colours
+from evolvent.results.drawing.style import INK, foot, sheet, torque_colours
 from evolvent_meshes.arrays import Floats
 
 BARS = (
@@ -55,14 +55,6 @@ class PitchColumns:
             error=both("transmission_error_um"),
             stiffness=both("tangent_stiffness_N_per_um"),
         )
-
-
-def excitation_picture(
-    facts: ExcitationFacts, rows: Sequence[ExcitationRow], harmonics: Sequence[HarmonicRow]
-) -> bytes:
-    """PNG of `excitation_figure`."""
-    with styled():
-        return png(excitation_figure(facts, rows, harmonics))
 
 
 def excitation_figure(

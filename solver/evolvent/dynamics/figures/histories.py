@@ -10,16 +10,10 @@ from matplotlib.figure import Figure
 
 from evolvent.dynamics.results.histories import HistoryRow
 from evolvent.dynamics.results.response import DriveSummary
-from evolvent.results.drawing.style import FAINT, PINION, WHEEL, foot, note, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, PINION, WHEEL, foot, note, sheet
 
 ALIKE = 1e-4
 """Largest difference of two motions that are drawn as one, over their largest force."""
-
-
-def histories_picture(known: DriveSummary, rows: Sequence[HistoryRow]) -> bytes:
-    """PNG of `histories_figure`."""
-    with styled():
-        return png(histories_figure(known, rows))
 
 
 def histories_figure(known: DriveSummary, rows: Sequence[HistoryRow]) -> Figure:

@@ -10,18 +10,9 @@ from matplotlib.figure import Figure
 from evolvent.dynamics.operation_figures import OperationFacts
 from evolvent.dynamics.results.histories import HistoryRow
 from evolvent.dynamics.results.tables import ExcitationRow
-from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, sheet
 
 FOOT = "Phase 0: a tooth pair touches at the pitch point."
-
-
-def operation_picture(
-    figures: OperationFacts, motion: Sequence[HistoryRow], excitation: Sequence[ExcitationRow],
-    series_stiffness: float | None,
-) -> bytes:
-    """PNG of `operation_figure`."""
-    with styled():
-        return png(operation_figure(figures, motion, excitation, series_stiffness))
 
 
 def operation_figure(

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from evolvent.dynamics.body_sentences import body_bands
 from evolvent.dynamics.results.response import BranchRow, DriveSummary, ResponseRow
-from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, sheet
 from evolvent_meshes.arrays import Floats
 
 SUPERHARMONICS = (1, 2, 3, 4)
@@ -34,12 +34,6 @@ BAND = (
     "with them."
 )
 """Sentence at the foot of the picture where error bars are known."""
-
-
-def response_picture(known: DriveSummary, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> bytes:
-    """PNG of `response_figure`."""
-    with styled():
-        return png(response_figure(known, rows, branch))
 
 
 def response_figure(known: DriveSummary, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]) -> Figure:
@@ -68,14 +62,6 @@ def response_figure(known: DriveSummary, rows: Sequence[ResponseRow], branch: Se
         *([BAND] if any(np.isfinite(row.dynamic_factor_error) for row in up) else []),
     )
     return figure
-
-
-def given_mesh_picture(
-    natural_speed: float, words: str, rows: Sequence[ResponseRow], branch: Sequence[BranchRow]
-) -> bytes:
-    """PNG of `given_mesh_figure`."""
-    with styled():
-        return png(given_mesh_figure(natural_speed, words, rows, branch))
 
 
 def given_mesh_figure(

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from evolvent.dynamics.results.torque_map import MapRow
-from evolvent.results.drawing.style import FAINT, INK, PINION, PRESSURE_MAP, foot, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, PINION, PRESSURE_MAP, foot, sheet
 from evolvent_meshes.arrays import Bools, Floats
 
 WAYS = "running up", "running down"
@@ -54,12 +54,6 @@ class MapGrid:
 
         speeds, natural = over("speed_rpm")[0, 0], over("natural_speed_rpm")[0, :, 0]
         return MapGrid(torques, natural, speeds, over("dynamic_factor"), over("separated_share"))
-
-
-def torque_map_picture(rows: Sequence[MapRow]) -> bytes:
-    """PNG of `torque_map_figure`."""
-    with styled():
-        return png(torque_map_figure(rows))
 
 
 def torque_map_figure(rows: Sequence[MapRow]) -> Figure:

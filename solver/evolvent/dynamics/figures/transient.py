@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from evolvent.dynamics.results.transient.facts import TransientFacts
 from evolvent.dynamics.results.transient.rows import TransientRow, TransientToothRow
-from evolvent.results.drawing.style import FAINT, INK, foot, friction_colours, note, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, foot, friction_colours, note, sheet
 from evolvent_meshes.arrays import Floats
 
 Colour = tuple[float, ...]
@@ -24,14 +24,6 @@ WIDTH, HEADER, ROW = 15.0, 1.4, 3.0
 """Width of the sheet, height of its titles with the foot, and height of a line of panels [inch]."""
 STATIC = {"ls": "--", "lw": 1.0}
 SUBTITLE = "The last mesh period, repeated, at each speed of the pinion, beside the same positions without inertia"
-
-
-def transient_picture(
-    title: str, rows: Sequence[TransientRow], teeth: Sequence[TransientToothRow], facts: Sequence[TransientFacts]
-) -> bytes:
-    """PNG of `transient_figure`."""
-    with styled():
-        return png(transient_figure(title, rows, teeth, facts))
 
 
 def transient_figure(

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from evolvent.dynamics.figures.transient import BAND, BANDS, STATIC, Colour
 from evolvent.dynamics.results.transient.beginning import StartRow
-from evolvent.results.drawing.style import foot, friction_colours, note, png, sheet, styled
+from evolvent.results.drawing.style import foot, friction_colours, note, sheet
 
 LONG = 5
 """Number of friction coefficients from which on the legend has two columns."""
@@ -21,12 +21,6 @@ SUBTITLE = (
     "The flanks touch at t = 0: one gear at its speed at once, the other one at rest under its torque. Dashed: without "
     "inertia."
 )
-
-
-def start_picture(title: str, rows: Sequence[StartRow]) -> bytes:
-    """PNG of `start_figure`."""
-    with styled():
-        return png(start_figure(title, rows))
 
 
 def start_figure(title: str, rows: Sequence[StartRow]) -> Figure:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from evolvent.dynamics.oscillator.response import HIGHEST_ORDER
 from evolvent.dynamics.results.response import DriveSummary
 from evolvent.dynamics.results.spectrum import SpectrumRow
-from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, sheet
 from evolvent_meshes.arrays import Floats
 
 LOWEST = 1e-3
@@ -22,12 +22,6 @@ BEYOND_NATURAL = 3.2
 """Highest frequency of the picture, over the natural one."""
 WHOLE, PART = 5.5, 3.0
 """Widths of lines of whole orders and of those between them [pt]."""
-
-
-def waterfall_picture(known: DriveSummary, rows: Sequence[SpectrumRow]) -> bytes:
-    """PNG of `waterfall_figure`."""
-    with styled():
-        return png(waterfall_figure(known, rows))
 
 
 def waterfall_figure(known: DriveSummary, rows: Sequence[SpectrumRow]) -> Figure:

@@ -40,14 +40,14 @@ class GivenMeshVibration(SweptVibration):
     def plot(self, path: Path | str) -> Path:
         """Draws amplitude, dynamic factor and time out of contact over the speed to a PNG file, and returns its path;
         creates missing folders. Raises InputError for another ending, WriteError."""
-        from evolvent.dynamics.figures.response import given_mesh_picture
+        from evolvent.dynamics.figures.response import given_mesh_figure
         from evolvent.results.solution.user_files import save_picture
 
         words = (
             f"Natural speed {self.natural_speed:.0f} r/min, of {1e3 * self.mass:.4g} kg on a given mean stiffness of "
             f"{1e-3 * self.mean_stiffness:.4g} N/µm."
         )
-        return save_picture(path, given_mesh_picture(self.natural_speed, words, self.rows, self.branch))
+        return save_picture(path, given_mesh_figure, self.natural_speed, words, self.rows, self.branch)
 
 
 def given_mesh_vibration(

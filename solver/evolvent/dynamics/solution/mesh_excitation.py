@@ -88,7 +88,7 @@ class GearExcitation:
     def plot(self, path: Path | str) -> Path:
         """Draws the curves, the force over the deflection and the peak-to-peak transmission error over the torque to a
         PNG file, and returns its path; creates missing folders. Raises InputError for another ending, WriteError."""
-        from evolvent.dynamics.figures.excitation import excitation_picture
+        from evolvent.dynamics.figures.excitation import excitation_figure
         from evolvent.dynamics.results.curves import NO_COMPANION
         from evolvent.dynamics.results.design_load import excitation_facts
         from evolvent.dynamics.results.tables import excitation_rows, harmonic_rows
@@ -96,7 +96,7 @@ class GearExcitation:
 
         title = f"Gear pair {self.pair.pinion.z}/{self.pair.wheel.z}"
         facts = excitation_facts(title, "as condensed", self.mesh, NO_COMPANION, self.pair)
-        return save_picture(path, excitation_picture(facts, excitation_rows(self.mesh), harmonic_rows(self.mesh)))
+        return save_picture(path, excitation_figure, facts, excitation_rows(self.mesh), harmonic_rows(self.mesh))
 
 
 def mesh_excitation(

@@ -39,10 +39,10 @@ class PairVibration(SweptVibration):
     def plot(self, path: Path | str) -> Path:
         """Draws amplitude, dynamic factor and time out of contact over the speed to a PNG file, and returns its path;
         creates missing folders. Raises InputError for another ending, WriteError."""
-        from evolvent.dynamics.figures.response import response_picture
+        from evolvent.dynamics.figures.response import response_figure
         from evolvent.results.solution.user_files import save_picture
 
-        return save_picture(path, response_picture(self.facts, self.rows, self.branch))
+        return save_picture(path, response_figure, self.facts, self.rows, self.branch)
 
 
 def vibration(

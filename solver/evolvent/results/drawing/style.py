@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -151,6 +151,12 @@ def png(figure: Figure) -> bytes:
     content = io.BytesIO()
     figure.savefig(content, format="png")
     return content.getvalue()
+
+
+def drawn(figure: Callable[..., Figure], *content: object) -> bytes:
+    """The content of a PNG file with the figure of some content, in this style."""
+    with styled():
+        return png(figure(*content))
 
 
 def save(figure: Figure, path: Path) -> Path:

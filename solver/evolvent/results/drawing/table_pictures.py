@@ -32,7 +32,7 @@ class TablePicture:
     needs: tuple[Readable, ...]
     """Tables that it is drawn from; a folder without one of them has no such picture."""
     draw: str
-    """"module:function" that takes the contents of the tables and returns the picture's. Imported when it is drawn, as
+    """"module:function" that takes the contents of the tables and returns a figure. Imported when it is drawn, as
     matplotlib takes a second to import."""
 
     def is_of(self, folder: Path) -> bool:
@@ -41,9 +41,10 @@ class TablePicture:
 
     def drawn(self, folder: Path) -> bytes:
         """Content of the picture's file. Raises ArchiveError."""
+        from evolvent.results.drawing.style import drawn
+
         module, _, function = self.draw.partition(":")
-        picture: bytes = getattr(import_module(module), function)(*(table.read(folder) for table in self.needs))
-        return picture
+        return drawn(getattr(import_module(module), function), *(table.read(folder) for table in self.needs))
 
 
 def from_tables(pictures: Iterable[TablePicture], folder: Path) -> Iterator[Picture]:

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.axial_section import draw_axial_section
-from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, sheet
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
@@ -19,12 +19,6 @@ POINTS = 200
 COLOURS = PINION, WHEEL
 TEXT_HEIGHT = 0.045
 """Height of a label over that of the axes."""
-
-
-def tooth_form_picture(title: str, pair: GearPair) -> bytes:
-    """PNG of `tooth_form_figure`."""
-    with styled():
-        return png(tooth_form_figure(title, pair))
 
 
 def tooth_form_figure(title: str, pair: GearPair) -> Figure:

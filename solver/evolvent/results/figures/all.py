@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from evolvent.results.drawing.offscreen import off_screen
 from evolvent.results.drawing.picture_files import Picture
-from evolvent.results.drawing.style import png, styled
+from evolvent.results.drawing.style import drawn, styled
 from evolvent.results.figures.drive import line_load, load_sharing, losses, transmission_error
 from evolvent.results.figures.flank import pressure_map
 from evolvent.results.figures.hertz import hertz_comparison
@@ -28,7 +28,7 @@ def pictures(run: RunData) -> Iterator[Picture]:
     if run.scene.output.pictures:
         yield Picture("01_loaded_pair.png", partial(_loaded_pair, run))
         for name, draw in figures(run):
-            yield Picture(f"{name}.png", partial(_flat, draw, run))
+            yield Picture(f"{name}.png", partial(drawn, draw, run))
     if run.scene.output.animation:
         yield Picture("animation.gif", partial(_animation, run))
 
@@ -57,18 +57,12 @@ def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
         yield "13_flank_modifications", modified_flanks
 
 
-def _flat(draw: Draw, run: RunData) -> bytes:
-    """PNG of a plane figure."""
-    with styled():
-        return png(draw(run))
-
-
 def _loaded_pair(run: RunData) -> bytes:
     """PNG of the loaded pair in space."""
     from evolvent.results.figures.space import loaded_pair  # imported here because the import of pyvista is slow
 
-    with styled(), off_screen():
-        return png(loaded_pair(run))
+    with off_screen():
+        return drawn(loaded_pair, run)
 
 
 def _animation(run: RunData) -> bytes:

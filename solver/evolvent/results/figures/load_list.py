@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.style import foot, friction_colours, png, sheet, styled, torque_colours
+from evolvent.results.drawing.style import foot, friction_colours, sheet, torque_colours
 from evolvent.results.tables.load_table import ERROR, LoadResult
 
 PANELS = (
@@ -17,12 +17,6 @@ PANELS = (
     ("mesh_stiffness_N_per_mm_um", "mean tangent mesh stiffness [N/(mm·µm)]"),
 )
 """Key of each figure and label of its axis."""
-
-
-def loads_picture(results: Sequence[LoadResult]) -> bytes:
-    """PNG of `loads_figure`."""
-    with styled():
-        return png(loads_figure(results))
 
 
 def loads_figure(results: Sequence[LoadResult]) -> Figure:

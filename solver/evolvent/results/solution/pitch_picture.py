@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.style import INK, PINION, foot, png, sheet, styled
+from evolvent.results.drawing.style import INK, PINION, foot, sheet
 from evolvent.results.solution.pitch_row import PitchRow
 
 PANELS = (
@@ -15,12 +15,6 @@ PANELS = (
     ("max_pressure_MPa", "largest pressure\n[MPa]"),
 )
 """Column of the rows, and label of its axis."""
-
-
-def pitch_picture(rows: Sequence[PitchRow]) -> bytes:
-    """PNG of `pitch_figure`."""
-    with styled():
-        return png(pitch_figure(rows))
 
 
 def pitch_figure(rows: Sequence[PitchRow]) -> Figure:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from evolvent.results.tables.table import csv_text
 from evolvent_meshes.files import write_bytes
 from evolvent_meshes.input_checks import refuse
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def save_rows(path: Path | str, rows: Sequence[Any]) -> Path:
@@ -18,10 +21,12 @@ def save_rows(path: Path | str, rows: Sequence[Any]) -> Path:
     return write_bytes(_ending(path, ".csv"), csv_text([asdict(row) for row in rows]).encode())
 
 
-def save_picture(path: Path | str, png: bytes) -> Path:
-    """Writes a picture to a PNG file, and returns its path; creates missing folders. Raises InputError for another
-    ending, WriteError."""
-    return write_bytes(_ending(path, ".png"), png)
+def save_picture(path: Path | str, figure: Callable[..., Figure], *content: object) -> Path:
+    """Draws the figure of some content to a PNG file, and returns its path; creates missing folders. Raises InputError
+    for another ending, WriteError."""
+    from evolvent.results.drawing.style import drawn  # matplotlib takes a second to import
+
+    return write_bytes(_ending(path, ".png"), drawn(figure, *content))
 
 
 def _ending(path: Path | str, ending: str) -> Path:

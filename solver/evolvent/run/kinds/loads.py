@@ -20,7 +20,7 @@ from evolvent.scene.part_torque import listed_percents, under_percents, with_per
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
 
-LOADS_PICTURE = TablePicture("loads.png", (LoadRuns(),), "evolvent.results.figures.load_list:loads_picture")
+LOADS_PICTURE = TablePicture("loads.png", (LoadRuns(),), "evolvent.results.figures.load_list:loads_figure")
 
 
 @dataclass(frozen=True)

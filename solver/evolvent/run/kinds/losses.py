@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from evolvent.results.drawing.table_pictures import TablePicture
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import RELIEVE, about_spacing, tip_edge_contact
-from evolvent.results.tables.table import Table
+from evolvent.results.tables.table import SCENE_TITLE, Table
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.kept_pitch import require_resumable
@@ -30,6 +30,9 @@ from evolvent.scene.part_torque import listed_percents, under_percents, with_per
 from evolvent.scene.scene import Scene, SceneError
 from evolvent.scene.schema.errors import InputProblem
 from evolvent.scene.skips import skips
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PART = "torque_{}_"
 """Part of the archive with the positions under a torque, by its number."""
@@ -68,7 +71,7 @@ class LossRow:
 
 
 LOSSES = Table("losses.csv", LossRow)
-LOSSES_PICTURE = TablePicture("losses.png", (LOSSES,), "evolvent.run.kinds.losses:losses_picture")
+LOSSES_PICTURE = TablePicture("losses.png", (SCENE_TITLE, LOSSES), "evolvent.run.kinds.losses:losses_figure")
 
 
 @dataclass(frozen=True)
@@ -175,33 +178,32 @@ def loss_lines(out: Path) -> Iterator[str]:
         )
 
 
-def losses_picture(rows: Sequence[LossRow]) -> bytes:
-    """PNG of the loss in percent, and of the friction power, over the torque."""
-    from evolvent.results.drawing.style import foot, friction_colours, png, sheet, styled
+def losses_figure(title: str, rows: Sequence[LossRow]) -> Figure:
+    """Loss in percent, and friction power, over the torque."""
+    from evolvent.results.drawing.style import foot, friction_colours, sheet
 
     frictions = sorted({row.friction for row in rows})
     most = max(rows, key=lambda row: row.loss_percent)
-    with styled():
-        figure = sheet(
-            "Friction loss over the torque",
-            f"At most {most.loss_percent:.3g} % of the input, at {most.torque_Nm:.4g} N·m on the {most.torque_on} and "
-            f"μ = {most.friction:g}, tooth loss factor {most.tooth_loss_factor:.3g}",
-        )
-        for axes, name, label in zip(
-            figure.subplots(1, 2), ("loss_percent", "loss_at_1000_rpm_W"),
-            ("loss over input [%]", f"friction power at {SPEED:g} r/min [W]"),
-        ):
-            for friction, colour in zip(frictions, friction_colours(frictions)):
-                own = [row for row in rows if row.friction == friction]
-                values, bars = ([getattr(row, each) for row in own] for each in (name, f"{name}_error"))
-                known = {"yerr": bars, "capsize": 3.0} if np.isfinite(bars).all() else {}
-                torques = [row.torque_Nm for row in own]
-                axes.errorbar(torques, values, color=colour, marker="o", label=f"μ = {friction:g}", **known)
-            axes.set_xlim(left=0.0)
-            axes.set_ylim(bottom=0.0)
-            axes.set_xlabel(f"torque on the {most.torque_on} [N·m]")
-            axes.set_ylabel(label)
-        axes.legend(loc="best")
-        said = ["Bars: estimated error, of mesh and spacing of positions."] * math.isfinite(most.loss_percent_error)
-        foot(figure, *said, "μ is the same at all speeds.")
-        return png(figure)
+    figure = sheet(
+        "Friction loss over the torque",
+        f"{title}. At most {most.loss_percent:.3g} % of the input, at {most.torque_Nm:.4g} N·m on the {most.torque_on} "
+        f"and μ = {most.friction:g}, tooth loss factor {most.tooth_loss_factor:.3g}",
+    )
+    for axes, name, label in zip(
+        figure.subplots(1, 2), ("loss_percent", "loss_at_1000_rpm_W"),
+        ("loss over input [%]", f"friction power at {SPEED:g} r/min [W]"),
+    ):
+        for friction, colour in zip(frictions, friction_colours(frictions)):
+            own = [row for row in rows if row.friction == friction]
+            values, bars = ([getattr(row, each) for row in own] for each in (name, f"{name}_error"))
+            known = {"yerr": bars, "capsize": 3.0} if np.isfinite(bars).all() else {}
+            torques = [row.torque_Nm for row in own]
+            axes.errorbar(torques, values, color=colour, marker="o", label=f"μ = {friction:g}", **known)
+        axes.set_xlim(left=0.0)
+        axes.set_ylim(bottom=0.0)
+        axes.set_xlabel(f"torque on the {most.torque_on} [N·m]")
+        axes.set_ylabel(label)
+    axes.legend(loc="best")
+    said = ["Bars: estimated error, of mesh and spacing of positions."] * math.isfinite(most.loss_percent_error)
+    foot(figure, *said, "μ is the same at all speeds.")
+    return figure

@@ -11,7 +11,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.style import FAINT, PINION, PRESSURE_MAP, foot, friction_colours, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, PINION, PRESSURE_MAP, foot, friction_colours, sheet
 from evolvent.strength.fatigue.criterion import DANG_VAN, DEEP, ORTHOGONAL_SHEAR, VON_MISES
 from evolvent.strength.results.fatigue_facts import FatigueFacts
 from evolvent.strength.results.fatigue_rows import FatigueDepthRow, FatigueMapRow
@@ -26,15 +26,6 @@ LEVELS, DEPTHS, SHOWN = 24, 201, 2.5
 
 REVERSAL = "Hollow points, hatched: friction reverses nearby, so that the stress history, and the value, does not hold."
 """Sentence at the foot of the picture where there are such points."""
-
-
-def fatigue_picture(
-    title: str, facts: Sequence[FatigueFacts], over: Sequence[FatigueMapRow], section: Sequence[FatigueDepthRow],
-    below: Sequence[FatigueDepthRow],
-) -> bytes:
-    """PNG of `fatigue_figure`."""
-    with styled():
-        return png(fatigue_figure(title, facts, over, section, below))
 
 
 def fatigue_figure(

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.style import INK, foot, friction_colours, png, sheet, styled
+from evolvent.results.drawing.style import INK, foot, friction_colours, sheet
 from evolvent.strength.results.tables import STANDARD, RootStressRow, StrengthRow
 from evolvent_meshes.gears.member import Member
 
@@ -18,12 +18,6 @@ SIZES = {f"{STANDARD}2006": 12.5, "equal": 10.0, "Pedrero": 6.0, f"{STANDARD}201
 """Beginning of a method -> size of its marker: on a spur pair several lie at one point, the larger ones below."""
 LINES: dict[str, str] = {f"{STANDARD}2006": ":", f"{STANDARD}2019": "-."}
 """Method of the standard -> style of its line."""
-
-
-def root_stress_picture(title: str, curves: Sequence[RootStressRow], rows: Sequence[StrengthRow]) -> bytes:
-    """PNG of `root_stress_figure`."""
-    with styled():
-        return png(root_stress_figure(title, curves, rows))
 
 
 def root_stress_figure(title: str, curves: Sequence[RootStressRow], rows: Sequence[StrengthRow]) -> Figure:

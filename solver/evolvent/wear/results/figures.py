@@ -20,10 +20,9 @@ from evolvent.results.drawing.style import (
     PINION,
     PRESSURE_MAP,
     WHEEL,
+    drawn,
     friction_colours,
-    png,
     sheet,
-    styled,
 )
 from evolvent.results.engagement import engagement
 from evolvent.results.fields.flank_field import flank_patch
@@ -49,8 +48,8 @@ def pictures(study: WornRun) -> Iterator[Picture]:
 
 
 def _drawn(draw: Draw, study: WornRun) -> bytes:
-    with styled(), off_screen():
-        return png(draw(study))
+    with off_screen():
+        return drawn(draw, study)
 
 
 def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:

@@ -3,16 +3,15 @@ the profile, and the depth of a million passages (He et al. 2022, Figs 17 to 19)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
-from typing import TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.picture_files import Picture
-from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, drawn, foot, sheet
 from evolvent.results.mesh_facts import cells_across, few_cells_across
 from evolvent.results.run_data import RunData
 from evolvent.scene.scene import GEARS
@@ -21,7 +20,6 @@ from evolvent.wear.results.mesh_passage import ContactProfile, DepthProfile, Poi
 from evolvent.wear.results.report import WornRun
 from evolvent_meshes.gears.member import Member
 
-T = TypeVar("T")
 FORMULA = {"color": INK, "linestyle": "--", "linewidth": 1.2}
 PASSAGES = 1e6
 UM = 1e3 * PASSAGES  # from mm per passage to µm in a million
@@ -29,14 +27,9 @@ UM = 1e3 * PASSAGES  # from mm per passage to µm in a million
 
 def pictures(study: WornRun, point: PointPassage) -> Iterator[Picture]:
     """The figures of a plane pair's first passage."""
-    yield Picture("26_point_in_contact.png", partial(_drawn, point_in_contact, point))
-    yield Picture("27_stress_and_sliding.png", partial(_drawn, stress_and_sliding, study.pairs[0].run))
-    yield Picture("28_depth_by_formula.png", partial(_drawn, depth_by_formula, study))
-
-
-def _drawn(figure: Callable[[T], Figure], data: T) -> bytes:
-    with styled():
-        return png(figure(data))
+    yield Picture("26_point_in_contact.png", partial(drawn, point_in_contact, point))
+    yield Picture("27_stress_and_sliding.png", partial(drawn, stress_and_sliding, study.pairs[0].run))
+    yield Picture("28_depth_by_formula.png", partial(drawn, depth_by_formula, study))
 
 
 def point_in_contact(point: PointPassage) -> Figure:

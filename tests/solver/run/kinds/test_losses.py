@@ -8,7 +8,8 @@ import pytest
 
 from evolvent.commands.app import main
 from evolvent.results.archive.store import ArchiveError
-from evolvent.run.kinds.losses import LOSSES, Losses, LossRow, losses_picture
+from evolvent.results.drawing.style import drawn
+from evolvent.run.kinds.losses import LOSSES, Losses, LossRow, losses_figure
 from evolvent.scene.scene import SceneError
 from tests.support.checkout import ROOT
 from tests.support.computing.quiet import quietly
@@ -54,7 +55,7 @@ def test_warnings_are_those_of_the_heaviest_torque(tmp_path: Path) -> None:
 
 def test_a_picture_without_error_bars(tmp_path: Path) -> None:
     """Drawn from rows whose errors are NaN."""
-    assert losses_picture(rows(tmp_path)).startswith(b"\x89PNG")
+    assert drawn(losses_figure, "pair", rows(tmp_path)).startswith(b"\x89PNG")
 
 
 def test_without_friction_there_is_no_loss() -> None:

@@ -9,17 +9,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.labels import UNITS, ending
-from evolvent.results.drawing.style import foot, png, sheet, styled
+from evolvent.results.drawing.style import foot, sheet
 from evolvent.run.study.figures.study_values import StudyValues, bare_name, figure_label
 
 COLOURS = matplotlib.colormaps["tab10"]
 MARKERS = "o", "s", "^", "D", "v", "P", "X", "*"
-
-
-def curves_picture(values: StudyValues, names: Sequence[str]) -> bytes:
-    """PNG of `curves_figure`."""
-    with styled():
-        return png(curves_figure(values, names))
 
 
 def curves_figure(values: StudyValues, names: Sequence[str]) -> Figure:

@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.labels import heading, label
-from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, sheet
 from evolvent.run.study.figures.study_values import StudyValues, bare_name, figure_label
 from evolvent_meshes.arrays import Floats
 
@@ -23,12 +23,6 @@ SIZES = (5, 12.0), (10, 9.5)
 """Most cells in a row, and the size of the numbers in them, on a slide as large as the labels of the axes."""
 LEAST_PART = 0.01
 """Smallest value over the largest one for which all are written with the same decimals."""
-
-
-def map_picture(values: StudyValues, name: str) -> bytes:
-    """PNG of `map_figure`."""
-    with styled():
-        return png(map_figure(values, name))
 
 
 def map_figure(values: StudyValues, name: str) -> Figure:

@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.style import FAINT, FRICTION_MAP, INK, foot, png, sheet, styled
+from evolvent.results.drawing.style import FAINT, FRICTION_MAP, INK, foot, sheet
 from evolvent.run.study.figures.study_values import StudyValues, figure_label
 from evolvent_meshes.arrays import Floats
 
@@ -20,12 +20,6 @@ MOST_FIGURES = 5
 MOST_TICKS = 8
 WIDTH = 20
 """Largest number of characters in a line of a label."""
-
-
-def parallel_picture(values: StudyValues, names: Sequence[str]) -> bytes:
-    """PNG of `parallel_figure`."""
-    with styled():
-        return png(parallel_figure(values, names))
 
 
 def parallel_figure(values: StudyValues, names: Sequence[str]) -> Figure:

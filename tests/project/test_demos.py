@@ -11,8 +11,9 @@ import pytest
 
 from evidence.tables import read_csv
 from tests.support.running.processes import Done, RunScript, on_ranks
+from tests.support.running.samples import sampled
 
-DEMOS = ("two_blocks", "hertz_cylinder", "transmission_error", "hertz_sphere")
+DEMOS = ("two_blocks", "transmission_error", "hertz_cylinder", "hertz_sphere")
 LARGER_CELLS = {"yang2022": 'demo.SMALL += ("mesh.order=1",)'}
 """Of a demo that takes long: what makes its small size smaller, to see that it runs on two ranks too."""
 
@@ -40,7 +41,7 @@ def alone(run_script: RunScript, tmp_path_factory: pytest.TempPathFactory) -> Al
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-@pytest.mark.parametrize("demo", [*DEMOS[:3], pytest.param(DEMOS[3], marks=[pytest.mark.slow, pytest.mark.evidence])])
+@pytest.mark.parametrize("demo", sampled(DEMOS, every=2))
 def test_demo(run_script: RunScript, alone: Alone, tmp_path: Path, demo: str, ranks: int) -> None:
     """Status 0, a table and a picture; the table is printed once, whatever the number of ranks."""
     done, out = alone(demo) if ranks == 1 else (run_script(*started(demo, tmp_path, 2), ranks=2), tmp_path)

@@ -45,8 +45,10 @@ def test_every_computing_command_says_it(
     """Problem: a chart over 80 % of the face; every computing command takes part. Right: each says on stderr that the
     chart is extended, and a run's summary.json beside its figures."""
     percent = [f"--percent={PERCENT[command]}"] if command in PERCENT else []
+    rubbing = ["--set=contact.friction=0.1"] * (command == "losses")  # which are nothing without friction
     out = tmp_path / "out"
-    assert main([command, *arguments(tmp_path / "lead.csv"), "--out", str(out), "--quiet", *percent]) == Exit.DONE
+    words = [command, *arguments(tmp_path / "lead.csv"), *percent, *rubbing]
+    assert main([*words, "--out", str(out), "--quiet"]) == Exit.DONE
     assert f"warning: {SAID}" in capsys.readouterr().err
     if command == "run":
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))

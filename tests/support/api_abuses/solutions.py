@@ -32,9 +32,12 @@ from tests.support.api_abuses.blocks import (
 )
 
 RESULTS = [
-    Refused("displacement of no body", lambda _: solve(problem()).displacement(2), ("a body index below 2, found 2",)),
+    Refused(
+        "displacement of no body", lambda _: solve(problem()).displacement(2),
+        ("a body of the problem, or its number from 0 to 1, found 2",),
+    ),
     Refused("displacement by name", lambda _: solve(problem()).displacement("upper"), ("found 'upper'",)),
-    Refused("reactions of no body", lambda _: reactions(solve(problem()), -1), ("a body index below 2, found -1",)),
+    Refused("reactions of no body", lambda _: reactions(solve(problem()), -1), ("its number from 0 to 1, found -1",)),
     Refused(
         "moments about nothing", lambda _: reactions(solve(problem()), 0, about=(NAN, 0.0)), ("about: wanted a point",)
     ),

@@ -127,7 +127,7 @@ class PitchSolution:
     def plot(self, path: Path | str) -> Path:
         """Draws transmission error, mesh stiffness and largest pressure over the pitch to a PNG file, and returns its
         path; creates missing folders. Raises InputError for another ending, WriteError."""
-        from evolvent.results.solution.pitch_figure import pitch_figure
+        from evolvent.results.solution.pitch_picture import pitch_figure
         from evolvent.results.solution.user_files import save_picture
 
         return save_picture(path, pitch_figure, self.rows)

@@ -10,9 +10,9 @@ from evolvent.strength.results.tables import ROOT_STRESS, STRENGTH
 
 ROOT_STRESS_PICTURE = TablePicture(
     "root_stress.png", (SCENE_TITLE, ROOT_STRESS, STRENGTH),
-    "evolvent.strength.results.root_stress_figure:root_stress_figure",
+    "evolvent.strength.results.root_stress_picture:root_stress_figure",
 )
 FATIGUE_PICTURE = TablePicture(
     "fatigue.png", (SCENE_TITLE, FATIGUE_FACTS, FATIGUE_MAP, FATIGUE_SECTION, FATIGUE_DEPTH),
-    "evolvent.strength.results.fatigue_figure:fatigue_figure",
+    "evolvent.strength.results.fatigue_picture:fatigue_figure",
 )

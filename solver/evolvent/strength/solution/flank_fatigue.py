@@ -112,7 +112,7 @@ class PitchFatigue:
         loaded point, to a PNG file, and returns its path; creates missing folders. Raises InputError for another
         ending, WriteError."""
         from evolvent.results.solution.user_files import save_picture
-        from evolvent.strength.results.fatigue_figure import fatigue_figure
+        from evolvent.strength.results.fatigue_picture import fatigue_figure
 
         title = f"Gear pair {self.pair.pinion.z}/{self.pair.wheel.z}"
         section, below = (list(rows(self.pair, self.by_friction)) for rows in (section_rows, depth_rows))

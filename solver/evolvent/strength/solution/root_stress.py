@@ -77,7 +77,7 @@ class RootStress:
         """Draws `curves` beside the formulas to a PNG file, and returns its path; creates missing folders. Raises
         InputError for another ending and for rims that the standard does not cover, WriteError."""
         from evolvent.results.solution.user_files import save_picture
-        from evolvent.strength.results.root_stress_figure import root_stress_figure
+        from evolvent.strength.results.root_stress_picture import root_stress_figure
 
         pair = self.loads[0].pair
         title = f"Gear pair {pair.pinion.z}/{pair.wheel.z}"

@@ -37,6 +37,7 @@ def correction() -> StripCorrection:
     return flank.correction({patch.block: flank.response(patch).contact for patch in flank.patches()})
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_shared_and_interpolated_responses_are_those_of_one_large_patch(monkeypatch: pytest.MonkeyPatch) -> None:
     """Against one patch that is all of the tooth: the largest difference is below 1.5 % of the largest correction.

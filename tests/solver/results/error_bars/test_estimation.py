@@ -71,6 +71,7 @@ def test_nine_in_ten_error_bars_hold_the_true_error(rows: list[BarRow]) -> None:
         assert hit_rate([row for row in rows if row.figure == figure]) >= 0.9, figure
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_error_bars_are_not_far_too_wide(rows: list[BarRow]) -> None:
     """A bar that is always far too wide would hold everything: of second-order meshes, with 3 and 6 elements across,

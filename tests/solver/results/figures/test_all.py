@@ -75,6 +75,7 @@ def test_pictures_name_the_same_largest_pressure(run: RunData) -> None:
                 assert wanted in " ".join(text.get_text() for text in draw(run).findobj(Text)), name
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_pictures_of_a_directory(run: RunData, tmp_path: Path) -> None:
     """A run on disk is drawn whole: all figures, the pair and an animation of as many frames as positions."""

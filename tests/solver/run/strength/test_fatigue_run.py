@@ -36,7 +36,8 @@ def rows(path: Path) -> list[dict[str, str]]:
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With error bars; a contact that is less than two elements wide is said."""
     folder = tmp_path_factory.mktemp("fatigue")
-    few, apart = quietly(Fatigue.of(scene()), folder)
+    tips, edges, few, apart = quietly(Fatigue.of(scene()), folder)
+    assert tips.startswith("No tip relief") and "within the tip-edge zones has no figures" in edges
     assert "elements across the contact (median): below 2" in few and "sweep.positions" in apart
     return folder
 
@@ -131,7 +132,7 @@ def test_facts(out: Path) -> None:
 def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:
     """All tables but that of lives."""
     alone = scene("contact.friction=0.1", "output.error_bars=false", "output.pictures=false")
-    assert len(quietly(Fatigue.of(alone), tmp_path)) == 2
+    assert len(quietly(Fatigue.of(alone), tmp_path)) == 4
     assert sorted(path.name for path in tmp_path.glob("fatigue*.csv")) == [
         "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv", "fatigue_section.csv"]
 

@@ -101,7 +101,7 @@ def test_kept_cases_have_their_steps(out: Path, monkeypatch: pytest.MonkeyPatch,
 def test_a_tolerance_that_is_not_reached_is_named(tmp_path: Path) -> None:
     """Halves at most, and a tolerance of a millionth: a sentence has the error, the length and what to do."""
     few = scene("transient.tolerance=1e-6", "transient.most_parts=2", "contact.friction=0", "transient.mesh_periods=2")
-    unsteady, beyond, seen, _ = quietly(Transient.of(few), tmp_path)
+    _, unsteady, beyond, seen, _ = quietly(Transient.of(few), tmp_path)
     (fact,) = facts(tmp_path)
     assert "not steady" in unsteady
     assert "2000 r/min, μ = 0: wanted an error of a time step of at most transient.tolerance = 1e-06" in beyond

@@ -18,7 +18,7 @@ from tests.support.checkout import ROOT
 from tests.support.computing.quiet import quietly
 from tests.support.computing.redrawn import redrawn
 
-POSITIONS = 20
+POSITIONS = 12
 SETTINGS = (
     "mesh.level=quick", f"sweep.positions={POSITIONS}", "transient.speeds_rpm=[60]", "transient.mesh_periods=2",
     "transient.tolerance=0.01", "transient.modes_per_harmonic=0", "dynamics.backlash_um=300", "output.animation=false",
@@ -83,6 +83,7 @@ def test_kept_cases_have_the_start(out: Path, tmp_path: Path) -> None:
     assert (again / "transient_start.csv").read_text() == (out / "transient_start.csv").read_text()
 
 
+@pytest.mark.evidence
 def test_from_statics_there_is_no_such_table(tmp_path: Path) -> None:
     """Nor a line of it, nor one that an earlier call has left."""
     quietly(Transient.of(scene('transient.start="rest"', *PLAIN)), tmp_path / "x")

@@ -26,9 +26,9 @@ from mpi4py import MPI
 
 from evolvent import STEEL, Body, Contact, Fixed, Freedom, MeshData, Placement, Problem, Rigid, Step
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.gears.kinematics import turn
 from evolvent.results.drawing.style import PRESSURE_MAP, save, sheet, styled
 from evolvent.wear import Archard, BlockSettings, Cycle, CycleState, Travel, WearStudy
+from evolvent_meshes.rotation import turn
 from evolvent_meshes.shapes.rings import ring_block
 from evolvent_meshes.shapes.variants import doubled, with_part
 

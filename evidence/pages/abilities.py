@@ -41,4 +41,4 @@ def table(docs: Path = DOCS) -> str:
 
 if __name__ == "__main__":
     found = abilities(Path(sys.argv[1]))
-    write_csv(DOCS / KEPT, list(found[0]), [list(row.values()) for row in found])
+    write_csv(DOCS / KEPT, list(found[0]), [[row.get(name, "no") for name in found[0]] for row in found])

@@ -7,10 +7,10 @@ import scipy.sparse as sp
 
 from evolvent.fem.body import assemble
 from evolvent.gears.condensed_gear import GearBody, sector_body
-from evolvent.gears.kinematics import turn
 from evolvent.gears.sweep.position_result import NodalForces
 from evolvent.results.fields.deformation import GearField
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.rotation import turn
 
 
 def reaction_imbalance(body: GearBody) -> Floats:

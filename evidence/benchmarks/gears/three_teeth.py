@@ -11,7 +11,6 @@ import numpy as np
 
 from evidence.benchmarks.comparison.task import Task, Turn
 from evidence.scenes import helical_pair
-from evolvent.gears.kinematics import turn
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.meshing.sector_meshes import linear
 from evolvent.scene.gear_problem import gear_problem
@@ -21,6 +20,7 @@ from evolvent_meshes.gears.flank import nominal_angles
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.structured_grid import weld
+from evolvent_meshes.rotation import turn
 from evolvent_meshes.sector.sector import sector_mesh
 
 TEETH = (-1, 0, 1)

@@ -15,9 +15,9 @@ from evolvent import Contact, Placement, Problem, Solution, Step, sweep
 from evolvent.contact import hertz
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL
-from evolvent.gears.kinematics import turn
 from evolvent.results.drawing.style import INK, PINION, TEETH, WHEEL, friction_colours
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.rotation import turn
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 from evolvent_meshes.shapes.variants import with_part
 

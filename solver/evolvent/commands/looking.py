@@ -51,10 +51,10 @@ def check(
             _require_new(out, ".png", overwrite)
         typer.echo(overview(loaded))
         if out is not None:
-            from evolvent.results.drawing.style import drawn
+            from evolvent.results.drawing.style import png_of
             from evolvent.results.drawing.tooth_form import tooth_form_figure
 
-            write_bytes(out, drawn(tooth_form_figure, loaded.title, loaded.gear_pair()))
+            write_bytes(out, png_of(tooth_form_figure, loaded.title, loaded.gear_pair()))
             typer.echo(f"\nTooth forms: {out}")
 
 

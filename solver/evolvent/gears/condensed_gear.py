@@ -25,7 +25,6 @@ from evolvent.fem.material import Material
 from evolvent.fem.parallel.cores import Threads
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.full_gear import WholeSystem, whole_mesh, whole_system
-from evolvent.gears.kinematics import turn
 from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.meshing.root_meshes import root_nodes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Compliance
@@ -33,6 +32,7 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.rotation import turn
 
 COUPLING_TOLERANCE = 1e-10
 """Relative error of the coupling between teeth, which is compressed."""

@@ -18,10 +18,10 @@ from evolvent.fem.condensation.schur_complement import compliance
 from evolvent.fem.material import Material
 from evolvent.fem.parallel.cores import Threads
 from evolvent.fem.surface import surface_of
-from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import MappedNodes
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.rotation import turn
 
 
 def whole_mesh(sector: MeshData, cuts: tuple[Ints, Ints], count: int) -> MeshData:

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from evolvent.gears.ring.ring_compliance import turn as turn
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import misalignment_rotation, misalignment_shift
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.rotation import turn
 
 E_Z = np.array([0.0, 0.0, 1.0])
 

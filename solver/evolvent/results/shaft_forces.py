@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.gears.kinematics import turn
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.rotation import turn
 
 
 @dataclass(frozen=True)

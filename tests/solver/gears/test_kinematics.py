@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.gears.kinematics import PairRotation, nominal_slip, spin, turn
+from evolvent.gears.kinematics import PairRotation, nominal_slip, spin
 from evolvent_meshes.gears.flank import Flank, action_plane_points, contact_normal, separation
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.rotation import turn
 from tests.support.paper_pairs import he, yang
 
 

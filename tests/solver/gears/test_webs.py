@@ -11,13 +11,13 @@ from mpi4py import MPI
 from evolvent.fem.material import STEEL
 from evolvent.gears import condense, solve_pitches
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
-from evolvent.gears.kinematics import turn
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import scene_from_text
 from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.rotation import turn
 from evolvent_meshes.sector.section import SectorResolution
 from evolvent_meshes.sector.sector import sector_mesh
 from tests.support.gear_cases import helical_scene, model_of

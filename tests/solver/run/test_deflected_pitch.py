@@ -99,11 +99,10 @@ def test_run_says_that_its_flanks_are_deflected(bent: Path, tmp_path: Path) -> N
     assert said(stiff, "mesh.level=quick", path=ROOT / "demos/he2022.toml") == (False, False, True)
 
 
-@pytest.mark.evidence
 def test_fatigue_has_its_flanks_deflected(bent: Path, tmp_path: Path) -> None:
     """The flanks' loads, and the scene that is written."""
     found, asked = tmp_path / "found", tmp_path / "asked"
-    assert quietly(Fatigue.of(scene(bent)), found)[0] == ON_DEFLECTED
+    assert ON_DEFLECTED in quietly(Fatigue.of(scene(bent)), found)
     assert ON_DEFLECTED not in quietly(Fatigue.of(scene(bent, ASKED)), asked)
     same(asked, found, "fatigue.csv", "scene.toml")
 

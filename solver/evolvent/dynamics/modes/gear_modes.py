@@ -17,10 +17,11 @@ from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.fem.parallel.memory import return_free_memory
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.condensed_gear import GearBody, SectorParts, sector_body, sector_parts
-from evolvent.gears.kinematics import spin, turn
+from evolvent.gears.kinematics import spin
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.rotation import turn
 
 
 @dataclass(frozen=True)

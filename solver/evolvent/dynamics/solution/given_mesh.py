@@ -63,7 +63,7 @@ def given_mesh_vibration(
     speeds: of the pinion, two at least, ascending [r/min].
     mass: equivalent mass I_1 I_2/(I_1 r_b2² + I_2 r_b1²) [t]; load: static mesh force F_0 [N].
     teeth: of the pinion, from which the mesh frequency follows.
-    damping_ratio: of the mesh, over the critical damping 2√(k m) at the mean stiffness.
+    damping_ratio: of the mesh, over the critical damping 2√(k m) at the mean stiffness; from 0.001 to 1.
     backlash: along the line of action, from flank to flank [mm]; the back flanks have the stiffness of the loaded ones
         at the same phase. None: there are none.
     damping_in_separation: whether the damping acts on separated flanks, too.

@@ -15,11 +15,11 @@ from evolvent.contact.transient.time_schemes.time_scheme import LinearSystem
 from evolvent.dynamics.modes.gear_modes import GearModes
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import MappedNodes
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.rotation import turn
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,11 @@ import numpy as np
 
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.gears.condensed_gear import GearBody
-from evolvent.gears.kinematics import PairRotation, turn
+from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.rotation import turn
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,7 @@ from evolvent.gears.ring.ring_modes import coupling
 from evolvent.gears.ring.ring_window import RingWindow
 from evolvent.gears.ring.sector_interfaces import ClosedRing
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.rotation import turn
 
 
 @dataclass(frozen=True)
@@ -241,14 +242,6 @@ def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
     next_frame = turn(settings.pitch, settings.dimension)
     low, high = sp.eye(size // 2), sp.kron(sp.eye(size // 2 // settings.dimension), next_frame)
     return sp.csr_array(sp.block_diag([low, high]))
-
-
-def turn(angle: float, d: int) -> Floats:
-    """Rotation matrix about +z, (d, d)."""
-    c, s = np.cos(angle), np.sin(angle)
-    R = np.eye(d)
-    R[:2, :2] = [[c, -s], [s, c]]
-    return R
 
 
 def _dofs(nodes: Ints, dimension: int) -> Ints:

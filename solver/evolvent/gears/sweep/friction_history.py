@@ -15,9 +15,10 @@ from evolvent.contact.newton.equilibrium import Equilibrium, with_components
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import PairRotation, turn
+from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.rotation import turn
 
 NO_LOAD = 1e-9  # of the largest force: what Newton's method may leave on a tooth without contact
 

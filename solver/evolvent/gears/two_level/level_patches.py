@@ -18,13 +18,13 @@ from scipy.interpolate import BarycentricInterpolator
 from evolvent.contact.two_level.fine_surface import CoarseBody, FineSurface
 from evolvent.contact.two_level.patch_response import patch_response
 from evolvent.fem.surface import Surface
-from evolvent.gears.ring.ring_compliance import turn
 from evolvent.gears.two_level.coarse_axis import Axis
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.strips import StripCorrection, turned
 from evolvent.gears.two_level.symmetric_strips import Strip
 from evolvent_meshes.arrays import Bools, Floats, Ints, Reals
 from evolvent_meshes.mesh.patches import Patch
+from evolvent_meshes.rotation import turn
 
 REACH = 1.1
 """How far a patch extends beyond the loaded cells, in the longest edges of the coarse flank's cells. Difference of nine

@@ -9,11 +9,12 @@ import numpy as np
 import scipy.sparse as sp
 
 from evolvent.fem.surface import Surface
-from evolvent.gears.ring.ring_compliance import ChainedCompliance, MappedNodes, turn
+from evolvent.gears.ring.ring_compliance import ChainedCompliance, MappedNodes
 from evolvent.gears.two_level.flank_window import FlankWindow, LevelWindow, ToothWindow, map_of
 from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.rough_flanks import RoughFlanks
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.rotation import turn
 
 
 class TwoLevelRing:

@@ -153,7 +153,7 @@ def png(figure: Figure) -> bytes:
     return content.getvalue()
 
 
-def drawn(figure: Callable[..., Figure], *content: object) -> bytes:
+def png_of(figure: Callable[..., Figure], *content: object) -> bytes:
     """The content of a PNG file with the figure of some content, in this style."""
     with styled():
         return png(figure(*content))

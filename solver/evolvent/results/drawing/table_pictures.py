@@ -41,10 +41,10 @@ class TablePicture:
 
     def drawn(self, folder: Path) -> bytes:
         """Content of the picture's file. Raises ArchiveError."""
-        from evolvent.results.drawing.style import drawn
+        from evolvent.results.drawing.style import png_of
 
         module, _, function = self.draw.partition(":")
-        return drawn(getattr(import_module(module), function), *(table.read(folder) for table in self.needs))
+        return png_of(getattr(import_module(module), function), *(table.read(folder) for table in self.needs))
 
 
 def from_tables(pictures: Iterable[TablePicture], folder: Path) -> Iterator[Picture]:

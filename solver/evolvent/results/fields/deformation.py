@@ -21,7 +21,6 @@ from evolvent.fem.parallel.ranks import together
 from evolvent.fem.stress import cell_stress
 from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
 from evolvent.gears.gear_model import prepare_model
-from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.position_result import NodalForces, PositionResult, nodal_forces
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
@@ -31,6 +30,7 @@ from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.rotation import turn
 
 
 @dataclass(frozen=True)

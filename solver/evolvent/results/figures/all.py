@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from evolvent.results.drawing.offscreen import off_screen
 from evolvent.results.drawing.picture_files import Picture
-from evolvent.results.drawing.style import drawn, styled
+from evolvent.results.drawing.style import png_of, styled
 from evolvent.results.figures.drive import line_load, load_sharing, losses, transmission_error
 from evolvent.results.figures.flank import pressure_map
 from evolvent.results.figures.hertz import hertz_comparison
@@ -28,7 +28,7 @@ def pictures(run: RunData) -> Iterator[Picture]:
     if run.scene.output.pictures:
         yield Picture("01_loaded_pair.png", partial(_loaded_pair, run))
         for name, draw in figures(run):
-            yield Picture(f"{name}.png", partial(drawn, draw, run))
+            yield Picture(f"{name}.png", partial(png_of, draw, run))
     if run.scene.output.animation:
         yield Picture("animation.gif", partial(_animation, run))
 
@@ -62,7 +62,7 @@ def _loaded_pair(run: RunData) -> bytes:
     from evolvent.results.figures.space import loaded_pair  # imported here because the import of pyvista is slow
 
     with off_screen():
-        return drawn(loaded_pair, run)
+        return png_of(loaded_pair, run)
 
 
 def _animation(run: RunData) -> bytes:

@@ -24,9 +24,9 @@ def save_rows(path: Path | str, rows: Sequence[Any]) -> Path:
 def save_picture(path: Path | str, figure: Callable[..., Figure], *content: object) -> Path:
     """Draws the figure of some content to a PNG file, and returns its path; creates missing folders. Raises InputError
     for another ending, WriteError."""
-    from evolvent.results.drawing.style import drawn  # matplotlib takes a second to import
+    from evolvent.results.drawing.style import png_of  # matplotlib takes a second to import
 
-    return write_bytes(_ending(path, ".png"), drawn(figure, *content))
+    return write_bytes(_ending(path, ".png"), png_of(figure, *content))
 
 
 def _ending(path: Path | str, ending: str) -> Path:

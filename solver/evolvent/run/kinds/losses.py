@@ -74,6 +74,21 @@ LOSSES = Table("losses.csv", LossRow)
 LOSSES_PICTURE = TablePicture("losses.png", (SCENE_TITLE, LOSSES), "evolvent.run.kinds.losses:losses_figure")
 
 
+def loss_lines(out: Path) -> Iterator[str]:
+    """Loss under the heaviest torque at each friction coefficient."""
+    rows = LOSSES.read(out)
+    heaviest = max(row.torque_Nm for row in rows)
+    for row in (row for row in rows if row.friction and row.torque_Nm == heaviest):
+        percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
+        power = plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)
+        factor = plus_minus(row.tooth_loss_factor, row.tooth_loss_factor_error, 4)
+        beside = "" if math.isnan(row.ohlendorf_loss_factor) else f" (Ohlendorf {row.ohlendorf_loss_factor:.4f})"
+        yield (
+            f"{row.torque_Nm:.4g} N·m on the {row.torque_on}, μ = {row.friction:g}: loss {percent} % of the input, "
+            f"{power} W at {SPEED:g} r/min; tooth loss factor {factor}{beside}"
+        )
+
+
 @dataclass(frozen=True)
 class Losses(Computation[list[SolvedPitches]]):
     """The pitch with friction under each of a list of torques."""
@@ -82,7 +97,7 @@ class Losses(Computation[list[SolvedPitches]]):
     command: ClassVar[str] = "losses"
     outputs: ClassVar[Outputs] = Outputs(
         (LOSSES.name,), (LOSSES_PICTURE,), stored=(f"results/{PART.format(0)}state.npz", "results/*torque_*.npz"),
-        lines=lambda out: loss_lines(out),
+        lines=loss_lines,
     )
 
     @classmethod
@@ -161,21 +176,6 @@ def _about(runs: Sequence[RunData]) -> Iterator[str]:
             edges = f"{found}, {under}: the friction of edges, where pressures are singular, is in the loss; {RELIEVE}."
         spaced = next((f"{under}: {each}" for each in about_spacing(run, friction_rows(run), ["loss_percent"])), spaced)
     yield from filter(None, (edges, spaced))
-
-
-def loss_lines(out: Path) -> Iterator[str]:
-    """Loss under the heaviest torque at each friction coefficient."""
-    rows = LOSSES.read(out)
-    heaviest = max(row.torque_Nm for row in rows)
-    for row in (row for row in rows if row.friction and row.torque_Nm == heaviest):
-        percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
-        power = plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)
-        factor = plus_minus(row.tooth_loss_factor, row.tooth_loss_factor_error, 4)
-        beside = "" if math.isnan(row.ohlendorf_loss_factor) else f" (Ohlendorf {row.ohlendorf_loss_factor:.4f})"
-        yield (
-            f"{row.torque_Nm:.4g} N·m on the {row.torque_on}, μ = {row.friction:g}: loss {percent} % of the input, "
-            f"{power} W at {SPEED:g} r/min; tooth loss factor {factor}{beside}"
-        )
 
 
 def losses_figure(title: str, rows: Sequence[LossRow]) -> Figure:

@@ -33,21 +33,23 @@ def fatigue_figure(
     below: Sequence[FatigueDepthRow],
 ) -> Figure:
     """The criterion of Dang Van over the pinion's flank and over the depth below mid-face, at the first friction
-    coefficient, as tables compare with it; three criteria below the most loaded point, at all.
+    coefficient above 0, if there is one; three criteria below the most loaded point, at all coefficients.
 
     title: of the scene. over: all over the flanks; section: below points at mid-face; below: below the most loaded one.
     """
-    first = over[0].friction
+    first = next((row.friction for row in over if row.friction), 0.0)
     points = [
         row for row in over
         if (row.gear, row.friction, row.criterion) == (Member.PINION.label, first, DANG_VAN.name)
     ]
-    error = facts[0].largest_pressure_MPa_error / facts[0].largest_pressure_MPa
+    fact = next(fact for fact in facts if fact.friction == first)
+    error = fact.largest_pressure_MPa_error / fact.largest_pressure_MPa
+    where = "the point with the largest contact pressure" + (" away from the pitch line" if first else "")
     cut = [row for row in section if (row.gear, row.friction) == (Member.PINION.label, first)]
     largest = [max(row.at_surface, row.at_0_02, row.at_0_05, row.at_0_1, row.below) for row in points]
     scale = Normalize(0.0, max(*largest, *(row.value for row in cut)))
     figure = sheet(f"{title}: contact fatigue", f"Dang Van's equivalent shear stress on the pinion, μ = {first:g}; "
-                   "right: criteria below the point with the largest contact pressure away from the pitch line",
+                   f"right: criteria below {where}",
                    (13.5, 5.0))
     flank, depth, profiles = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 0.9))
     _over_flank(flank, points, scale, error)
@@ -55,7 +57,7 @@ def fatigue_figure(
     _hatch_reversal(depth, points, sorted({row.diameter_mm for row in cut}))
     depth.set_title(f"{DANG_VAN.words}: below {'mid-face' if _has_width(points) else 'the flank'}", fontsize=10)
     for axes in (flank, depth):
-        axes.axhline(facts[0].pinion_pitch_diameter_mm, color=FAINT, lw=0.8, ls="--")
+        axes.axhline(fact.pinion_pitch_diameter_mm, color=FAINT, lw=0.8, ls="--")
     figure.colorbar(ScalarMappable(scale, PRESSURE_MAP), ax=depth, label=f"{DANG_VAN.words} [MPa]")
     _below(profiles, [row for row in below if row.gear == Member.PINION.label], error)
     band = f"Bands: estimated error by the contact pressure, {100.0 * error:.2g} % at μ = {first:g}."

@@ -161,7 +161,8 @@ def passing_stress(
     number("depth", depth, "a number from 0 on, in mm", "0 is the surface", lambda z: z >= 0.0)
     number("poissons_ratio", poissons_ratio, "a number from 0 to 0.5", "steel has 0.3", lambda ν: 0.0 <= ν <= 0.5)
     wanted, remedy = "finite numbers, in mm", "write np.linspace(first, last, count)"
-    x = np.array(vector("places", places, (np.size(places),), wanted, remedy))
+    count = np.asarray(places, dtype=object).size  # also of rows of different lengths, which are refused next
+    x = np.array(vector("places", places, (count,), wanted, remedy))
     tractions = HertzTractions(half_width, peak_pressure, friction)
     return plane_strain(tractions.stress(x, np.full_like(x, depth)), poissons_ratio)
 

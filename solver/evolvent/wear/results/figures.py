@@ -20,8 +20,8 @@ from evolvent.results.drawing.style import (
     PINION,
     PRESSURE_MAP,
     WHEEL,
-    drawn,
     friction_colours,
+    png_of,
     sheet,
 )
 from evolvent.results.engagement import engagement
@@ -49,7 +49,7 @@ def pictures(study: WornRun) -> Iterator[Picture]:
 
 def _drawn(draw: Draw, study: WornRun) -> bytes:
     with off_screen():
-        return drawn(draw, study)
+        return png_of(draw, study)
 
 
 def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.picture_files import Picture
-from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, drawn, foot, sheet
+from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png_of, sheet
 from evolvent.results.mesh_facts import cells_across, few_cells_across
 from evolvent.results.run_data import RunData
 from evolvent.scene.scene import GEARS
@@ -27,9 +27,9 @@ UM = 1e3 * PASSAGES  # from mm per passage to µm in a million
 
 def pictures(study: WornRun, point: PointPassage) -> Iterator[Picture]:
     """The figures of a plane pair's first passage."""
-    yield Picture("26_point_in_contact.png", partial(drawn, point_in_contact, point))
-    yield Picture("27_stress_and_sliding.png", partial(drawn, stress_and_sliding, study.pairs[0].run))
-    yield Picture("28_depth_by_formula.png", partial(drawn, depth_by_formula, study))
+    yield Picture("26_point_in_contact.png", partial(png_of, point_in_contact, point))
+    yield Picture("27_stress_and_sliding.png", partial(png_of, stress_and_sliding, study.pairs[0].run))
+    yield Picture("28_depth_by_formula.png", partial(png_of, depth_by_formula, study))
 
 
 def point_in_contact(point: PointPassage) -> Figure:

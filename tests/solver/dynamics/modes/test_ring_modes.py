@@ -14,10 +14,10 @@ from evolvent.fem.condensation.schur_complement import Factor
 from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.gears.condensed_gear import GearBody, matching_cuts
 from evolvent.gears.full_gear import whole_mesh, whole_system
-from evolvent.gears.kinematics import turn
 from evolvent.gears.problem.gear_inertia import polar_moment
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.rotation import turn
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
 THREE = ModeChoice(0.0, per_harmonic=3)

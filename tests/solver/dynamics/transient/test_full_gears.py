@@ -34,7 +34,7 @@ from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.gears.condensed_gear import GearBody, matching_cuts
 from evolvent.gears.full_gear import whole_mesh, whole_system
 from evolvent.gears.gear_model import GearModel, prepare_model
-from evolvent.gears.kinematics import spin, turn
+from evolvent.gears.kinematics import spin
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
@@ -44,6 +44,7 @@ from evolvent.scene.scene import scene_from_text
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.rotation import turn
 from tests.support.gear_cases import QUIET
 
 PAIR = """

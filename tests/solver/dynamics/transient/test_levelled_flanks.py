@@ -9,6 +9,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 from mpi4py import MPI
 
 from evolvent.contact.newton.applied_compliance import AppliedCompliance
@@ -61,6 +62,7 @@ def first(transient: PairTransient) -> MovingMoment:
     return next(transient.run(start.at(transient.time_step), 1))
 
 
+@pytest.mark.evidence
 def test_a_step_with_friction_is_in_balance() -> None:
     """3000 r/min, μ = 0.2, one mode of each harmonic of both gears: the step solved with products alone is in balance.
     Momentum and reaction, summed from the nodes' forces and displacements, hold to 1e-8, and the modes vibrate."""

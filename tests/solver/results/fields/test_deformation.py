@@ -11,13 +11,13 @@ import pyvista
 from evolvent.fem.stress import von_mises
 from evolvent.gears.condensed_gear import sector_body, sector_parts
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.kinematics import turn
 from evolvent.gears.meshing import levelled_meshes
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.fields.deformation import Deformation
 from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import Scene
+from evolvent_meshes.rotation import turn
 from tests.support.computing.quiet import quietly
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 

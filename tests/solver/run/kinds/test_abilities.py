@@ -24,11 +24,8 @@ from evolvent.dynamics.excitation import loaded_mesh
 from evolvent.gears.solution import certificates
 from evolvent.gears.solution.certificates import PitchImbalance
 from evolvent.gears.sweep import pitch_sweep
-from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.store import ArchiveError, Store
-from evolvent.results.drawing.picture_files import Picture, draw
-from evolvent.run.call import DEFAULT
-from evolvent.run.folder_checks import check_folder
 from evolvent.run.kinds.all import KINDS, Kind
 from evolvent.run.study.plan.study_file import COMPUTATIONS
 from evolvent.scene.scene import load_scene
@@ -164,21 +161,6 @@ def test_foreign_files_stay(kind: Kind, tmp_path: Path) -> None:
     with pytest.raises(FolderError, match=table.name):
         quietly(small(kind), tmp_path, overwrite=True)
     assert table.read_text(encoding="utf-8") == "mine"
-
-
-def test_foreign_picture_is_not_drawn(kind: Kind, tmp_path: Path) -> None:
-    """Files of the names of all pictures that no call has written: nothing is refused, and each picture is left
-    undrawn, with what can be done; drawing again would not help."""
-    own = [name for name in kind.load().outputs.results if name.startswith("pictures/")]
-    names = [Path(name).name for name in own] or ["01_a.png"]
-    (tmp_path / "pictures").mkdir()
-    for name in names:
-        (tmp_path / "pictures" / name).write_text("mine", encoding="utf-8")
-    check_folder(small(kind), tmp_path, DEFAULT)
-    drawn = draw([Picture(name, lambda: b"ours") for name in names], RunFolder(tmp_path))
-    assert len(drawn.failures) == len(names) and not drawn.written
-    assert all("move or remove" in said and "evolvent plot" not in said for said in drawn.failures)
-    assert {path.read_text(encoding="utf-8") for path in (tmp_path / "pictures").iterdir()} == {"mine"}
 
 
 def test_every_picture_is_drawn_again(kind: Kind, whole: Whole, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from evolvent.commands.app import main
 from evolvent.results.archive.store import ArchiveError
-from evolvent.results.drawing.style import drawn
+from evolvent.results.drawing.style import png_of
 from evolvent.run.kinds.losses import LOSSES, Losses, LossRow, losses_figure
 from evolvent.scene.scene import SceneError
 from tests.support.checkout import ROOT
@@ -43,6 +43,18 @@ def test_tooth_loss_factor_stands_beside_the_formula(tmp_path: Path) -> None:
     assert without.loss_percent == 0.0 and without.tooth_loss_factor != without.tooth_loss_factor
 
 
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_errors_follow_from_that_of_the_loss(tmp_path: Path, gear: str) -> None:
+    """With input P on the pinion the power P l has the error P δl; with P delivered by the wheel it is P l/(1 − l), and
+    its derivative P/(1 − l)². The loss factor has that of the loss over μ."""
+    (row,) = rows(tmp_path, f"load.on={gear}", "output.error_bars=true")
+    loss, error = 0.01 * row.loss_percent, 0.01 * row.loss_percent_error
+    left = 1.0 - loss if gear == "wheel" else 1.0
+    assert 0.0 < error < loss
+    assert row.loss_at_1000_rpm_W_error == pytest.approx(row.input_at_1000_rpm_W / left * error, rel=1e-6)
+    assert row.tooth_loss_factor_error == pytest.approx(error / 0.3, rel=1e-6)
+
+
 def test_warnings_are_those_of_the_heaviest_torque(tmp_path: Path) -> None:
     """Deflection under twice the torque, twice 8.5 µm; edges that bear, spacing, and an operating speed are said."""
     speed = "dynamics.operating_rpm=3000", "dynamics.backlash_um=50", "sweep.positions=8"
@@ -55,7 +67,7 @@ def test_warnings_are_those_of_the_heaviest_torque(tmp_path: Path) -> None:
 
 def test_a_picture_without_error_bars(tmp_path: Path) -> None:
     """Drawn from rows whose errors are NaN."""
-    assert drawn(losses_figure, "pair", rows(tmp_path)).startswith(b"\x89PNG")
+    assert png_of(losses_figure, "pair", rows(tmp_path)).startswith(b"\x89PNG")
 
 
 def test_without_friction_there_is_no_loss() -> None:

@@ -18,11 +18,15 @@ from evolvent.results.archive.run_cost import Cost, write_cost
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.archive.scene_files import write_scene
+from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.drawing.table_pictures import TablePicture
+from evolvent.run.call import DEFAULT
+from evolvent.run.folder_checks import check_folder
 from evolvent.run.kinds.all import KINDS, Kind
 from evolvent.run.kinds.redraw import plot_folder
 from evolvent.scene.scene import load_scene
 from tests.support.checkout import ROOT
+from tests.support.computing.small_kinds import small
 from tests.support.made_rows import made
 from tests.support.running.transient_tables import transient_tables
 from tests.support.scene_texts import WEAR
@@ -117,3 +121,19 @@ def test_every_picture_has_a_function_that_takes_its_tables(picture: TablePictur
     """As many parameters as tables: the name is a text, which no type checker reads."""
     module, _, function = picture.draw.partition(":")
     assert len(signature(getattr(import_module(module), function)).parameters) == len(picture.needs)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_foreign_picture_is_not_drawn(kind: Kind, tmp_path: Path) -> None:
+    """Files of the names of all pictures that no call has written: nothing is refused, and each picture is left
+    undrawn, with what can be done; drawing again would not help."""
+    own = [name for name in kind.load().outputs.results if name.startswith("pictures/")]
+    names = [Path(name).name for name in own] or ["01_a.png"]
+    (tmp_path / "pictures").mkdir()
+    for name in names:
+        (tmp_path / "pictures" / name).write_text("mine", encoding="utf-8")
+    check_folder(small(kind), tmp_path, DEFAULT)
+    drawn = draw([Picture(name, lambda: b"ours") for name in names], RunFolder(tmp_path))
+    assert len(drawn.failures) == len(names) and not drawn.written
+    assert all("move or remove" in said and "evolvent plot" not in said for said in drawn.failures)
+    assert {path.read_text(encoding="utf-8") for path in (tmp_path / "pictures").iterdir()} == {"mine"}

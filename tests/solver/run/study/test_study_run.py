@@ -56,6 +56,13 @@ def run(folder: Path, text: str = TORQUES, overwrite: bool = False) -> list[str]
     return [each for each in said if "scenes have warnings" not in each]
 
 
+def test_scenes_with_warnings_are_counted(tmp_path: Path, computed: list[str], not_drawn: None) -> None:
+    """The study ends with how many scenes have warnings, as coarse meshes do, and study.csv has the number of each."""
+    said = run_study(study_of(tmp_path, TORQUES), tmp_path / "out", lambda: nullcontext(HERE), 1, False, quiet=True)
+    assert [each for each in said if "3 of 3 scenes have warnings" in each]
+    assert all(int(row["warnings"]) > 0 for row in table(tmp_path / "out"))
+
+
 def test_table_has_a_row_a_scene(tmp_path: Path, computed: list[str]) -> None:
     """Three torques: Hertz pressure grows with their root, the contact ratio stays; a folder and a picture each."""
     assert run(tmp_path) == []

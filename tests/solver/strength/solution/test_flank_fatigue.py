@@ -144,7 +144,7 @@ def test_pitches_that_cannot_be_are_refused(gears: GearModel) -> None:
             pitch_fatigue(gears, wrong)  # type: ignore[arg-type]  # refused
     with pytest.raises(InputError, match="settings: wanted a FatigueSettings"):
         pitch_fatigue(gears, [], None)  # type: ignore[arg-type]  # refused
-    for places in (None, 0.0, ["x"], [np.nan]):
+    for places in (None, 0.0, ["x"], [np.nan], [[0.1], [0.1, 0.2]]):
         with pytest.raises(InputError, match="places: wanted finite numbers, in mm"):
             passing_stress(places, 0.1, PEAK, HALF)  # type: ignore[arg-type]  # refused
     with pytest.raises(InputError, match=r"poissons_ratio: wanted a number from 0 to 0\.5"):

@@ -76,6 +76,7 @@ def test_a_slow_pair_wears_as_under_its_torque() -> None:
     assert one.vibrations == ()
 
 
+@pytest.mark.evidence
 def test_wear_and_vibration_change_each_other_and_resume() -> None:
     """Problem: worn by some µm at 3000 r/min. Exact: the volume that wears off is not that under the constant torque;
     the unloaded transmission error grows; and a study resumed by other objects after the second block has the depths

@@ -14,7 +14,7 @@ def study_pictures(values: StudyValues) -> list[Picture]:
     shown = [name for name in values.figures if values.has(name)]
     if not shown:
         return []
-    from evolvent.results.drawing.style import drawn  # matplotlib takes a second to import
+    from evolvent.results.drawing.style import png_of  # matplotlib takes a second to import
     from evolvent.run.study.figures.curves import curves_figure
     from evolvent.run.study.figures.heat_map import map_figure
     from evolvent.run.study.figures.parallel_coordinates import parallel_figure
@@ -23,11 +23,11 @@ def study_pictures(values: StudyValues) -> list[Picture]:
         units = dict.fromkeys(ending(bare_name(name)) for name in shown)
         alike = {unit: [name for name in shown if ending(bare_name(name)) == unit] for unit in units}
         return [
-            Picture(f"curves{unit}.png", partial(drawn, curves_figure, values, names)) for unit, names in alike.items()
+            Picture(f"curves{unit}.png", partial(png_of, curves_figure, values, names)) for unit, names in alike.items()
         ]
     if len(values.axes) == 2 and not values.is_sampled:
-        return [Picture(f"map_{_file_name(name)}.png", partial(drawn, map_figure, values, name)) for name in shown]
-    return [Picture("parallel_coordinates.png", partial(drawn, parallel_figure, values, shown))]
+        return [Picture(f"map_{_file_name(name)}.png", partial(png_of, map_figure, values, name)) for name in shown]
+    return [Picture("parallel_coordinates.png", partial(png_of, parallel_figure, values, shown))]
 
 
 def _file_name(name: str) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -24,7 +25,9 @@ Colour = str | tuple[float, ...]
 LEVELS, DEPTHS, SHOWN = 24, 201, 2.5
 """Colours, depths at which they are drawn, and the deepest in half-widths of the contact."""
 
-REVERSAL = "Hollow points, hatched: friction reverses nearby, so that the stress history, and the value, does not hold."
+HATCHED: Mapping[str, Any] = {"facecolor": "none", "edgecolor": "white", "hatch": "///", "lw": 0.0}
+"""How the flank is drawn where friction reverses."""
+REVERSAL = "Hatched, hollow points: friction reverses nearby, so that the stress history, and the value, does not hold."
 """Sentence at the foot of the picture where there are such points."""
 
 
@@ -78,20 +81,21 @@ def _has_width(points: Sequence[FatigueMapRow]) -> bool:
 
 def _over_flank(axes: Axes, points: Sequence[FatigueMapRow], scale: Normalize, error: float) -> None:
     """Dang Van's criterion, the largest below the surface, over face and diameter; over the diameter alone in plane
-    strain. Points near which friction reverses are hollow. error: relative; NaN where it is not known."""
+    strain. Where friction reverses the flank is hatched; in plane strain points are hollow. error: relative; NaN where
+    it is not known."""
     columns = [(row.height_mm, row.diameter_mm, row.below) for row in points]
     height, diameter, values = np.array(columns).T
     doubtful = np.array([row.near_friction_reversal for row in points])
-    hollow = {"mfc": "white", "mec": PINION, "ls": "none", "ms": 6.0, "zorder": 3}
     axes.set_title(f"{DANG_VAN.words}: largest below {DEEP:g} half-widths", fontsize=10)
     axes.set_ylabel("diameter of the pinion [mm]")
     if _has_width(points):
         axes.tricontourf(height, diameter, values, _levels(scale), cmap=PRESSURE_MAP, norm=scale)
-        axes.plot(height[doubtful], diameter[doubtful], "o", **hollow)
+        if doubtful.any():
+            axes.axhspan(diameter[doubtful].min(), diameter[doubtful].max(), **HATCHED)
         axes.set_xlabel("face [mm]")
     else:
         axes.plot(values, diameter, color=PINION, marker=".")
-        axes.plot(values[doubtful], diameter[doubtful], "o", **hollow)
+        axes.plot(values[doubtful], diameter[doubtful], "o", mfc="white", mec=PINION, ls="none", ms=6.0, zorder=3)
         _band(axes, values, diameter, error, PINION)
         axes.set_xlabel(f"{DANG_VAN.words} [MPa]")
 
@@ -110,7 +114,7 @@ def _hatch_reversal(axes: Axes, points: Sequence[FatigueMapRow], diameters: Sequ
     limits = [diameters[0], *middles, diameters[-1]]
     for diameter, (low, high) in zip(diameters, pairwise(limits)):
         if diameter in near:
-            axes.axhspan(low, high, facecolor="none", edgecolor="white", hatch="///", lw=0.0)
+            axes.axhspan(low, high, **HATCHED)
 
 
 def _section(axes: Axes, rows: Sequence[FatigueDepthRow], half_width: float, scale: Normalize) -> None:

@@ -20,7 +20,12 @@ def same_tables(one: Path, other: Path, relative: float = 1e-6) -> bool:
     matrices round by where these lie in memory. relative: largest difference of numbers; those below 1e-7 count as
     zero."""
     names = [{path.name for pattern in ("*.csv", "*.json") for path in folder.glob(pattern)} for folder in (one, other)]
-    return names[0] == names[1] and all(_same(values(one / name), values(other / name), relative) for name in names[0])
+    return names[0] == names[1] and all(same_table(one / name, other / name, relative) for name in names[0])
+
+
+def same_table(one: Path, other: Path, relative: float = 1e-6) -> bool:
+    """Whether two CSV or JSON files are the same, as of `same_tables`."""
+    return _same(values(one), values(other), relative)
 
 
 def values(path: Path) -> dict[str, str | float]:

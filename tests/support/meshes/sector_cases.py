@@ -24,6 +24,8 @@ GEARS: dict[str, tuple[Callable[[], GearPair], int]] = {
     "zhang gear": (zhang, 1),
 }
 
+ROUNDING = 1e-12
+"""Largest difference [mm] of points that are meshed alike twice: sums round by where arrays lie in memory."""
 COARSE = SectorResolution(profile_elements=12, face_elements=4)
 
 

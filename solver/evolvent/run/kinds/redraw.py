@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
-from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_folder import LOCK, FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Drawn, draw
 from evolvent.run.computation import Computation
@@ -23,11 +23,16 @@ def plot_folder(out: Path) -> Drawn:
     Raises SceneError, ArchiveError, WriteError; FolderError where there is nothing to draw, or where something is
     computed into the folder.
     """
-    with locked(out) if os.path.isdir(out) else nullcontext():  # first, as a running call has not ended
+    with locked(out) if _is_used(out) else nullcontext():  # first, as a running call has not ended
         what = _finished(out)
         drawn = draw(what.pictures(out), RunFolder(out))
         changed = changed_files(what, out)
         return replace(drawn, failures=(*drawn.failures, changed)) if changed else drawn
+
+
+def _is_used(out: Path) -> bool:
+    """Whether a call has begun in a folder, or runs there. Others are not locked: a lock removes what is empty."""
+    return os.path.isdir(out) and bool(os.path.lexists(os.path.join(out, LOCK)) or begun_command(out))
 
 
 def _finished(out: Path) -> Computation[object]:

@@ -137,3 +137,12 @@ def test_foreign_picture_is_not_drawn(kind: Kind, tmp_path: Path) -> None:
     assert len(drawn.failures) == len(names) and not drawn.written
     assert all("move or remove" in said and "evolvent plot" not in said for said in drawn.failures)
     assert {path.read_text(encoding="utf-8") for path in (tmp_path / "pictures").iterdir()} == {"mine"}
+
+
+def test_an_empty_folder_stays(tmp_path: Path) -> None:
+    """Nothing to draw in a folder of the user's: refused, and the folder is still there."""
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    with pytest.raises(FolderError, match="found no results in it"):
+        plot_folder(folder)
+    assert folder.is_dir() and not list(folder.iterdir())

@@ -71,7 +71,7 @@ def test_cells_of_webs_are_well_shaped(name: str) -> None:
 
 @pytest.mark.parametrize("shape", ["hexahedron", "tetrahedron"])
 def test_web_as_wide_as_the_face_is_the_full_ring(shape: str) -> None:
-    """The same mesh."""
+    """A web that is as wide as the face leaves nothing out: the mesh is that of the full ring."""
     gear, start = gear_and_start("yang wheel")
     resolution = replace(COARSE, flank_start_diameter=start)
     mesh, plain = (sector_mesh(each, resolution, shape) for each in (replace(gear, web=Web(16.9, 6.0, 90.0)), gear))

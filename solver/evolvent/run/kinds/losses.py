@@ -20,6 +20,7 @@ from evolvent.results.drawing.table_pictures import TablePicture
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import RELIEVE, about_spacing, tip_edge_contact
+from evolvent.results.tables.summary_rows import FrictionRow
 from evolvent.results.tables.table import SCENE_TITLE, Table
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
@@ -138,9 +139,10 @@ class Losses(Computation[list[SolvedPitches]]):
         """The table of all torques."""
         mended = any(load.fine.solved.deflected for load in solved) and skips(self.scene, "deflected-flanks")
         reasons = dict.fromkeys(load.coarse.reason for load in solved if load.coarse.reason)
-        runs = [load.run_data(companion_of(load.coarse)) for load in solved]
-        rows = [row for run in runs for row in _rows(run)]
-        said = [*[ON_DEFLECTED] * mended, *reasons, *_about(runs)]
+        runs = (load.run_data(companion_of(load.coarse)) for load in solved)
+        figures = [(run, friction_rows(run)) for run in runs]
+        rows = [row for each in figures for row in _rows(*each)]
+        said = [*[ON_DEFLECTED] * mended, *reasons, *_about(figures)]
         timings = sum((load.timings for load in solved), Timings())
         return Results(self.scene, [LOSSES.of(rows)], said, timings=timings)
 
@@ -151,11 +153,11 @@ class Losses(Computation[list[SolvedPitches]]):
             require_resumable(scene, call.folder.out, self.command, part, self.scene)
 
 
-def _rows(run: RunData) -> Iterator[LossRow]:
-    """Losses at each friction coefficient under one torque."""
+def _rows(run: RunData, figures: Sequence[FrictionRow]) -> Iterator[LossRow]:
+    """Losses at each friction coefficient under one torque. figures: of the run."""
     load, beside = run.scene.load, ohlendorf_loss_factor(run.pair)
     passed = 1e-3 * run.scene.hertz_estimate().pinion_torque * MeshSpeed(SPEED, run.pair.pinion.z).rad_s
-    for index, row in enumerate(friction_rows(run)):
+    for index, row in enumerate(figures):
         loss, bar = 0.01 * row.loss_percent, 0.01 * run.errors.bar("loss_percent", index)
         delivered = 1.0 - loss if load.on == "wheel" else 1.0  # part of the input that the torque is held for
         factor, factor_bar = (each / row.friction if row.friction else math.nan for each in (loss, bar))
@@ -167,14 +169,15 @@ def _rows(run: RunData) -> Iterator[LossRow]:
         )
 
 
-def _about(runs: Sequence[RunData]) -> Iterator[str]:
-    """Warnings on edges that bear and on the spacing of positions, for the heaviest torque that has them."""
+def _about(figures: Sequence[tuple[RunData, Sequence[FrictionRow]]]) -> Iterator[str]:
+    """Warnings on edges that bear and on the spacing of positions, for the heaviest torque that has them. figures: run
+    under each torque with its own, the lightest first."""
     edges, spaced = "", ""
-    for run in runs:
+    for run, rows in figures:
         under = f"under {run.scene.load.torque_Nm:.4g} N·m"
         if found := tip_edge_contact(run):
             edges = f"{found}, {under}: the friction of edges, where pressures are singular, is in the loss; {RELIEVE}."
-        spaced = next((f"{under}: {each}" for each in about_spacing(run, friction_rows(run), ["loss_percent"])), spaced)
+        spaced = next((f"{under}: {each}" for each in about_spacing(run, rows, ["loss_percent"])), spaced)
     yield from filter(None, (edges, spaced))
 
 

@@ -55,6 +55,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "gears.sweep": (
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
     ),
+    "gears.line": (
+        "meshes", "meshes.gears", "fem", "contact.newton", "gears.ring", "gears.two_level", "gears",
+    ),
     "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.solution": (
         "meshes", "fem.backend", "contact.problem", "gears.problem", "gears", "gears.sweep",
@@ -104,7 +107,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.oscillator": ("meshes", "fem.backend"),
     "dynamics.excitation": (
-        "meshes", "meshes.gears", "fem.parallel", "gears", "gears.sweep", "gears.solution", "dynamics.oscillator",
+        "meshes", "meshes.gears", "fem.parallel", "gears", "gears.line", "gears.sweep", "gears.solution",
+        "dynamics.oscillator",
     ),
     "dynamics": (
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene.schema", "scene",

@@ -10,7 +10,8 @@ from mpi4py import MPI
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshing.flank_levels import LevelledSector, levelled_sector
-from evolvent.gears.meshing.levelled_meshes import levelled_mesh, unmodified
+from evolvent.gears.meshing.levelled_meshes import levelled_mesh
+from evolvent.gears.meshing.sector_meshes import unmodified
 from evolvent.gears.meshing.sector_sizes import finest_cells
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level.flank_refinement import coarse_body

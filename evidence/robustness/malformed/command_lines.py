@@ -17,7 +17,7 @@ from evolvent.commands.app import app
 SOUND: Mapping[str, str] = {
     "SCENE.toml": "scene.toml", "STUDY.toml": "study.toml", "RECORD.csv...": "record.csv", "DIR": "run",
     "--out DIR": "out", "--out FILE.png": "teeth.png", "--out FILE.msh": "pair.msh",
-    "--level quick|standard|fine": "quick", "--set KEY=VALUE": "load.torque_Nm=100", "--exact NAME": "window",
+    "--level line|quick|standard|fine": "quick", "--set KEY=VALUE": "load.torque_Nm=100", "--exact NAME": "window",
     "--percent LIST": "50,100", "--workers N": "1", "--scheduler ADDRESS": "tcp://127.0.0.1:1",
     "--petsc-options OPTIONS": "-log_view", "--force-N": "500", "--pin-diameter-mm": "6", "--run-in-m": "500",
 }

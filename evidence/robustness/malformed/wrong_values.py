@@ -28,7 +28,7 @@ WRONG: Mapping[str, tuple[str, ...]] = {
     "--out DIR": NO_FOLDER,
     "--out FILE.png": ("", "teeth", "teeth.svg", "scene.toml/teeth.png", "no\0name.png"),
     "--out FILE.msh": ("", "pair", "pair.stl", "scene.toml/pair.msh", "no\0name.msh"),
-    "--level quick|standard|fine": ("", "Quick", "quick ", "ultra", "1", 'fine"', "[]", "\udcff"),
+    "--level line|quick|standard|fine": ("", "Quick", "quick ", "ultra", "1", 'fine"', "[]", "\udcff"),
     "--set KEY=VALUE": ("", "=", "load.torque_Nm", "load.torque_Nm=", "=100", "load=100", "load.torque_Nm=1 2",
                         "a.b.c=1", "load..torque_Nm=1", "[load]=1", "load.torque_Nm=100\n[x]", "#=1", "\udcff=1"),
     "--exact NAME": ("", "windows", "all", "Window", "window,plane", "\udcff"),

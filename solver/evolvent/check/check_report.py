@@ -22,6 +22,7 @@ from evolvent.check.text_table import Row, table
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.scene.gear_pair import working_angle_of
 from evolvent.scene.gear_problem import gear_problem
@@ -205,22 +206,27 @@ def _cost_rows(scene: Scene) -> list[Row]:
     is_levelled = is_two_level(problem)
     name = "positions, at least" if any(scene.contact.friction) else "positions"  # some are solved again with friction
     levels = [Row("degrees of freedom of a flank", "", "", tuple(map(counted, flank_dofs(scene))))]
+    rooted = scene.strength is not None and not problem.is_line  # whose roots a line contact does not serve
     roots = [Row("with its finer roots, of `evolvent strength`", "", "", (gigabytes(strength_megabytes(scene)),))]
     return [
         Row("level", "", "", (scene.mesh.level,)),
         Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
-        _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(problem, is_levelled)),
+        *([] if problem.is_line else [_across(problem, is_levelled)]),
         Row("elements along the loaded flank", "", "", tuple(map(counted, rows))),
         Row("layers over the face width", "", "", ("plane",) * 2 if problem.is_plane else tuple(map(counted, layers))),
         Row("degrees of freedom of a sector", "", "", tuple(counted(size.dofs) for size in sector_sizes(scene))),
         *(levels if is_levelled else []),
         Row("largest memory of a run on one rank, estimated", "", "", (gigabytes(memory_megabytes(scene)),)),
-        *(roots if scene.strength is not None else []),
+        *(roots if rooted else []),
         Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
         Row("tooth pairs that can touch", "", "", (str(len(problem.touching_teeth)),)),
         Row(name, "", "", (str(problem.pitches * scene.sweep.positions),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),
     ]
+
+
+def _across(problem: GearProblem, levels: bool) -> Row:
+    return _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(problem, levels))
 
 
 def _room_line(scene: Scene) -> str:

@@ -244,6 +244,8 @@ def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:
         kept = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in long_ways))
         scene = scene.model_copy(update={"exact": kept})
         yield f"{' and '.join(long_ways)} out of exact.parts (--exact)", scene
+    if scene.mesh.level == "line":
+        return
     if (count := scene.mesh.elements_per_contact_width) is None:
         for level in LEVELS[LEVELS.index(scene.mesh.level) + 1 :]:
             yield f"--level {level}", scene.changed("mesh", level=level)

@@ -33,15 +33,8 @@ def scene_warnings(scene: Scene) -> Iterator[str]:
     yield from chart_warnings(scene)
     yield from effectless_keys(scene)
     problem = gear_problem(scene)
-    count = elements_per_contact_width(problem)
-    if count < FEWEST_CELLS:
-        yield f"The contact will be about {count:.1f} elements wide; {few_cells()}"
-    if count < STIFF_ELEMENTS and has_stiff_pinion(problem):
-        yield (
-            "The pinion, which carries the pressure, is much stiffer than the wheel: with fewer than "
-            f"{STIFF_ELEMENTS:g} elements across the contact single pressures may be several times too large; leave "
-            "mesh.elements_per_contact_width out, or make the softer gear the pinion."
-        )
+    if not problem.is_line:
+        yield from _width_warnings(problem)
     if scene.mesh.shape == "tetrahedron":
         yield (
             "Tetrahedra are cut from hexahedra that are long over the face and in the body: their scaled Jacobian "
@@ -56,5 +49,18 @@ def scene_warnings(scene: Scene) -> Iterator[str]:
     if scene.dynamics is not None or scene.transient is not None:
         yield from (f"{each}." for each in doubtful(scene.planned_vibration()))
     yield from flank_warnings(problem)
-    if not is_two_level(problem):  # coarse sectors have no modifications
+    if not (is_two_level(problem) or problem.is_line):  # coarse sectors have no modifications
         yield from folding_warnings(problem, sector_resolutions(problem))
+
+
+def _width_warnings(problem: GearProblem) -> Iterator[str]:
+    """Warnings on the elements across the width of the contact."""
+    count = elements_per_contact_width(problem)
+    if count < FEWEST_CELLS:
+        yield f"The contact will be about {count:.1f} elements wide; {few_cells()}"
+    if count < STIFF_ELEMENTS and has_stiff_pinion(problem):
+        yield (
+            "The pinion, which carries the pressure, is much stiffer than the wheel: with fewer than "
+            f"{STIFF_ELEMENTS:g} elements across the contact single pressures may be several times too large; leave "
+            "mesh.elements_per_contact_width out, or make the softer gear the pinion."
+        )

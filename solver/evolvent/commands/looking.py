@@ -14,6 +14,7 @@ from evolvent.commands.exit import reported
 from evolvent.commands.options import ExactParts, Force, LevelOption, Overrides, SceneFile, given_number, given_path
 from evolvent.commands.scene_argument import loaded_scene, require, require_room, warn
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.line_level import require_resolved
 from evolvent_meshes.files import require_writable, write_bytes
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
@@ -73,6 +74,7 @@ def mesh(
     """
     with reported():
         loaded = loaded_scene(scene, level, settings, exact)
+        require_resolved(loaded.mesh, "mesh")
         _require_new(out, ".msh", overwrite)
         require_room(loaded, "mesh", force)
         from evolvent.gears.meshing.levelled_meshes import is_two_level

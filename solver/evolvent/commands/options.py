@@ -187,7 +187,7 @@ LevelOption = Annotated[
     str | None,
     typer.Option(
         "--level",
-        metavar="quick|standard|fine",
+        metavar="line|quick|standard|fine",
         help="Short for --set mesh.level=...; by default the scene's, which is standard where it names none.",
     ),
 ]

@@ -17,7 +17,7 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.gear_load import GearLoad, gear_load
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, is_two_level, run_mesh
-from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.problem.flank_deviations import FlankChart, FlankCharts
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level_pair import two_level_pair
 from evolvent_meshes.gears.member import Member
@@ -49,6 +49,13 @@ class GearModel:
     """Whether contact is searched again on deflected flanks."""
     pitches: int = 1
     """Number of angular pitches of a sweep."""
+    charts: FlankCharts = (None, None)
+    """Deviations of the flanks of pinion and wheel, which `bodies` have at their nodes; None: as designed."""
+
+    @property
+    def is_line(self) -> bool:
+        """Whether the gears are condensed for line contact: neither has the pressure side of Nitsche's method."""
+        return all(body.traction is None for body in self.bodies)
 
     @property
     def base_radius(self) -> float:
@@ -114,7 +121,7 @@ class CondensedGears:
         )
         model = GearModel(
             problem.pair, (pinion, wheel), problem.contact_teeth, gear_load(problem), problem.window_half_width,
-            problem.options.friction_terms, problem.options.deflected_flanks, problem.pitches,
+            problem.options.friction_terms, problem.options.deflected_flanks, problem.pitches, problem.flanks,
         )
         return Preparation(model, self.mesh_seconds, self.seconds)
 
@@ -175,7 +182,7 @@ def _condensed(
     def condensed(member: Member) -> GearBody:
         return condensed_gear(
             problem.pair.gears[member], plain[member], problem.materials[member], problem.contact_teeth, member,
-            member is Member.PINION, whole=problem.options.whole_gears, threads=cores.used,
+            member is Member.PINION and not problem.is_line, whole=problem.options.whole_gears, threads=cores.used,
         )
 
     built = together(comm, lambda: {member: {0: condensed(member)} for member in plain}, cores.lent)

@@ -13,7 +13,8 @@ from evolvent.contact.nitsche.flux_recovery import SAFETY, nitsche_traction
 from evolvent.fem.parallel.cores import Threads
 from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
-from evolvent.gears.meshing.levelled_meshes import LevelledMesh, unmodified
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh
+from evolvent.gears.meshing.sector_meshes import unmodified
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.two_level.flank_refinement import FlankRefinement, RefinedFlank, patches_of_levels

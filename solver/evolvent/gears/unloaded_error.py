@@ -10,7 +10,7 @@ of contact is found.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,16 +68,28 @@ class RigidFlanks:
         normal = flank.helicoid_normal(roll_length, z)
         return flank.helicoid_point(roll_length, z) - self.depth(member, roll_length, z)[..., None] * normal
 
-    def gap(self, facing: _Facing, free: Member, roll_length: Floats, z: Floats) -> Floats:
+    def gap(self, facing: Facing, free: Member, roll_length: Floats, z: Floats) -> Floats:
         """Gap (s, p) [mm] along the line of action, in the transverse section, that turning the `free` gear closes, at
         points (s, p) of the other gear's flank; infinite where these do not face the free gear's flank."""
+        gap, at, at_z = self.extended_gap(facing, free, roll_length, z)
+        flank = Flank(self.pair.gears[free])
+        (low, high), half = flank.roll_lengths, 0.5 * flank.gear.face_width
+        with np.errstate(invalid="ignore"):
+            faces = (at >= low) & (at <= high) & (np.abs(at_z) <= half)
+        return np.where(faces, gap, np.inf)
+
+    def extended_gap(
+        self, facing: Facing, free: Member, roll_length: Floats, z: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Gap (s, p) [mm] as of `gap`, and roll length and height (s, p) [mm] of the feet on the free gear's flank,
+        which goes on beyond its ends with the modification that it has there."""
         flank = Flank(self.pair.gears[free])
         points = self.points(free.mate, roll_length, z) @ facing.turn + facing.shift[:, None]
         foot, foot_z, distance = flank.project(points)
         height = distance - flank.modification(foot, foot_z)
         cosine, sine = np.cos(flank.gear.base_helix_angle), flank.gear.hand * np.sin(flank.gear.base_helix_angle)
         radial, axial = foot + height * cosine, foot_z - height * sine  # of the point itself: it stays
-        (low, high), half = flank.roll_lengths, 0.5 * flank.gear.face_width
+        low, high = flank.roll_lengths
         with np.errstate(invalid="ignore"):
             below, at, at_z = np.zeros_like(height), radial, axial
             for _ in range(FEET):
@@ -85,8 +97,7 @@ class RigidFlanks:
                 at, at_z = radial - below * cosine, axial + below * sine
                 if np.nanmax(np.abs(below - last), initial=0.0) < FOUND:
                     break
-            faces = (at >= low) & (at <= high) & (np.abs(at_z) <= half)
-        return np.where(faces, (height - below) / cosine, np.inf)
+        return (height - below) / cosine, at, at_z
 
 
 def unloaded_error(flanks: RigidFlanks, angles: Floats, free: Member = Member.PINION) -> Floats:
@@ -102,7 +113,7 @@ def unloaded_error(flanks: RigidFlanks, angles: Floats, free: Member = Member.PI
 
 def _least_gaps(flanks: RigidFlanks, stands: Sequence[PairRotation], free: Member) -> Floats:
     """(n,) least gap [mm] of all tooth pairs at each angular position."""
-    number, facing = _Facing.of(flanks.pair, stands, free)
+    number, facing = Facing.of(flanks.pair, stands, free)
     search = _Search(flanks, facing, free)
     least = np.full(len(stands), np.inf)
     np.minimum.at(least, number, search.best)
@@ -112,7 +123,7 @@ def _least_gaps(flanks: RigidFlanks, stands: Sequence[PairRotation], free: Membe
 
 
 @dataclass(frozen=True, eq=False)
-class _Facing:
+class Facing:
     """Tooth pairs (s,) at some angular positions: transformation from the standing gear's frame to that of the free
     gear."""
 
@@ -122,26 +133,32 @@ class _Facing:
     """(s, 3) translations [mm]."""
 
     @staticmethod
-    def of(pair: GearPair, stands: Sequence[PairRotation], free: Member) -> tuple[Ints, _Facing]:
+    def of(pair: GearPair, stands: Sequence[PairRotation], free: Member) -> tuple[Ints, Facing]:
         """Tooth pairs (s,) that may touch, with the indices (s,) of their angular positions."""
-        numbers, turns, shifts = [], [], []
-        for number, stand in enumerate(stands):
-            touching, offset = pair.teeth_in_contact(stand.angle), stand.centre(free.mate, 3) - stand.centre(free, 3)
-            for tooth in range(min(touching) - 1, max(touching) + 2):
-                other = stand.rotation(free, 3, tooth)
-                numbers.append(number)
-                turns.append(stand.rotation(free.mate, 3, tooth).T @ other)
-                shifts.append(offset @ other)
-        return np.array(numbers), _Facing(np.array(turns), np.array(shifts))
+        touching = [pair.teeth_in_contact(stand.angle) for stand in stands]
+        near = [range(min(teeth) - 1, max(teeth) + 2) for teeth in touching]
+        parts = [Facing.of_teeth(stand, teeth, free) for stand, teeth in zip(stands, near)]
+        turns, shifts = (np.concatenate(each) for each in zip(*((part.turn, part.shift) for part in parts)))
+        return np.repeat(np.arange(len(stands)), [len(teeth) for teeth in near]), Facing(turns, shifts)
 
-    def __getitem__(self, some: Ints) -> _Facing:
-        return _Facing(self.turn[some], self.shift[some])
+    @staticmethod
+    def of_teeth(stand: PairRotation, teeth: Iterable[int], free: Member) -> Facing:
+        """Some tooth pairs at one angular position."""
+        offset, turns, shifts = stand.centre(free.mate, 3) - stand.centre(free, 3), [], []
+        for tooth in teeth:
+            other = stand.rotation(free, 3, tooth)
+            turns.append(stand.rotation(free.mate, 3, tooth).T @ other)
+            shifts.append(offset @ other)
+        return Facing(np.array(turns), np.array(shifts))
+
+    def __getitem__(self, some: Ints) -> Facing:
+        return Facing(self.turn[some], self.shift[some])
 
 
 class _Search:
     """The least gaps of tooth pairs (s,), on grids each finer than the one before; the first is searched at once."""
 
-    def __init__(self, flanks: RigidFlanks, facing: _Facing, free: Member) -> None:
+    def __init__(self, flanks: RigidFlanks, facing: Facing, free: Member) -> None:
         low, high = Flank(flanks.pair.gears[free.mate]).roll_lengths
         half = 0.5 * flanks.pair.face_width if flanks.varies_over_the_face else 0.0
         self.limits, self.zoom = np.array([[low, high], [-half, half]]), (ZOOM_POINTS, ZOOM_POINTS if half else 1)

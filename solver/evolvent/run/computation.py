@@ -16,6 +16,7 @@ from evolvent.results.tables.table import Filled
 from evolvent.run.call import Call
 from evolvent.scene.chart_warnings import chart_warnings
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.line_level import require_resolved
 from evolvent.scene.scene import Scene
 
 Solved = TypeVar("Solved")
@@ -74,6 +75,8 @@ class Computation(ABC, Generic[Solved]):
     """Command of the program that computes it."""
     outputs: ClassVar[Outputs]
     """Files that the computation leaves."""
+    in_line_contact: ClassVar[bool] = False
+    """Whether it can be computed in line contact."""
     is_list: ClassVar[bool] = False
     """Whether it consists of computations in folders of their own, which display their progress themselves."""
 
@@ -87,6 +90,11 @@ class Computation(ABC, Generic[Solved]):
     def sized(self) -> Iterable[Scene]:
         """Scenes whose memory is looked at before anything is computed."""
         return [self.scene]
+
+    def require_level(self) -> None:
+        """Raises SceneError for line contact where the contact has to be resolved."""
+        if not self.in_line_contact:
+            require_resolved(self.scene.mesh, self.command)
 
     def check(self) -> None:
         """Refuses scenes that cannot be computed, before anything is written. On rank 0 alone. Raises InputError."""

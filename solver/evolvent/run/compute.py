@@ -33,6 +33,7 @@ def compute(what: Computation[Solved], out: Path, options: Options = DEFAULT) ->
     ArchiveError, WriteError and what else the computation raises; all on all ranks.
     """
     comm, folder = MPI.COMM_WORLD, RunFolder(out)
+    on_first(comm, what.require_level)
     on_first(comm, what.check)
     shown = replace(options, quiet=options.quiet or what.is_list)
     with ExitStack() as lock:

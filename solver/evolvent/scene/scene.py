@@ -19,6 +19,7 @@ from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.gears.problem.load_limits import NARROWEST_CONTACT, overload, rounded_down
 from evolvent.scene.backlash import backlash_conflict
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
+from evolvent.scene.line_level import line_conflict
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
 from evolvent.scene.schema.dependence import without_main_key
@@ -73,6 +74,12 @@ class Scene(SceneSection):
     def _keys_have_an_effect(self) -> Self:
         if problems := without_main_key(self):
             raise validation_error(*problems)
+        return self
+
+    @model_validator(mode="after")
+    def _line_contact_resolves_no_width(self) -> Self:
+        if problem := line_conflict(self.mesh, self.exact):
+            raise validation_error(problem)
         return self
 
     @model_validator(mode="after")

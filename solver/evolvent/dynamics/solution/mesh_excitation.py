@@ -13,7 +13,13 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh, certify_torques, mesh_of, solved_figures
+from evolvent.dynamics.excitation.loaded_mesh import (
+    LoadedMesh,
+    certify_torques,
+    in_line_contact,
+    mesh_of,
+    solved_figures,
+)
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.problem.flank_deviations import FlankChart, FlankCharts
 from evolvent.gears.solution.certified_pitch import balanced
@@ -121,7 +127,8 @@ def mesh_excitation(
     def solved(deflected: bool) -> LoadedMesh:
         found = solved_figures(replace(gears, deflected=deflected), torques, angles, comm)
         certify_torques(found, torques)
-        return mesh_of(found, torques, gears.base_radius, angles, deflected)
+        mesh = mesh_of(found, torques, gears.base_radius, angles, deflected)
+        return in_line_contact(mesh, torques[-1])[0]
 
     loaded = balanced(solved, gears.deflected)
     unloaded = unloaded_error(RigidFlanks(gears.pair, flanks), angles, gears.load.on)

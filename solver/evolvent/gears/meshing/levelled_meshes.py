@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from evolvent.gears.meshing.element_sizes import sector_resolution
 from evolvent.gears.meshing.flank_levels import FlankLevel, LevelledSector, levelled_sector
-from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.meshing.sector_meshes import gear_mesh, unmodified
 from evolvent.gears.meshing.sector_sizes import finest_cells, one_mesh_sizes
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.sector import sector_mesh
 
@@ -45,7 +43,7 @@ SectorMesh = MeshData | LevelledMesh
 def is_two_level(problem: GearProblem) -> bool:
     """Whether the flanks have levels of their own: as the settings say or, by default, where that can be, one fine mesh
     has more than `MOST_DOFS` degrees of freedom, and the flank's cells are not `LONGEST`."""
-    if problem.is_plane or problem.mesh.two_level is False:
+    if problem.is_plane or problem.is_line or problem.mesh.two_level is False:
         return False
     return problem.mesh.two_level is True or (is_large(problem) and not has_long_cells(problem))
 
@@ -100,8 +98,3 @@ def flank_cells(problem: GearProblem, member: Member) -> tuple[int, int]:
         return finest_cells(levelled_sector(problem, member))
     resolution = sector_resolution(problem, member)
     return resolution.profile_elements, resolution.face_elements
-
-
-def unmodified(gear: GearParameters) -> GearParameters:
-    """The gear without relief and crowning."""
-    return replace(gear, modifications=Modifications())

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from evolvent.gears.meshing.element_sizes import sector_resolution
 from evolvent.gears.meshing.modifications import too_much_relief
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from evolvent_meshes.mesh.quality import least_determinants
 from evolvent_meshes.mesh.reference_cells import corner_count
@@ -30,8 +33,8 @@ FACET_OF = {
 def gear_mesh(
     problem: GearProblem, member: Member, adapted: Adaption = lambda resolution: resolution
 ) -> MeshData:
-    """The sector of the pinion or the wheel in its own frame [mm]; of a plane problem the mid-face section. adapted:
-    changes its resolution.
+    """The sector of the pinion or the wheel in its own frame [mm]; of a plane problem the mid-face section. For line
+    contact the flanks have no modifications, which do not change the compliance. adapted: changes its resolution.
 
     Raises MeshError, also where first-order cells fold in a thin tooth, and TooMuchRelief where the flank's
     modification folds the cells.
@@ -39,12 +42,18 @@ def gear_mesh(
     shape = PLANE_SHAPE[problem.mesh.shape] if problem.is_plane else problem.mesh.shape
     resolution = adapted(sector_resolution(problem, member))
     try:
-        mesh = sector_mesh(problem.pair.gears[member], resolution, shape)
+        gear = problem.pair.gears[member]
+        mesh = sector_mesh(unmodified(gear) if problem.is_line else gear, resolution, shape)
     except MeshError as error:
         if reason := too_much_relief(problem, member, resolution):
             raise reason from error
         raise
     return mesh if problem.mesh.order == 2 else _first_order(mesh, member)
+
+
+def unmodified(gear: GearParameters) -> GearParameters:
+    """The gear without relief and crowning."""
+    return replace(gear, modifications=Modifications())
 
 
 def _first_order(mesh: MeshData, member: Member) -> MeshData:

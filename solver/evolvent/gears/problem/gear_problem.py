@@ -16,12 +16,16 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.input_checks import Words, both_gears, instance, number, one_of, refuse
 
-Level = Literal["quick", "standard", "fine"]
-LEVELS: tuple[Level, ...] = ("quick", "standard", "fine")
+Level = Literal["line", "quick", "standard", "fine"]
+LEVELS: tuple[Level, ...] = ("line", "quick", "standard", "fine")
 CellShape = Literal["hexahedron", "tetrahedron"]
 SHAPES: tuple[CellShape, ...] = ("hexahedron", "tetrahedron")
 WINDOW = 1.6
 """Half-width of the contact window in largest Hertz half-widths."""
+
+
+LINE_CELLS = "hexahedron", 2, None
+"""Cells, order and elements across the contact width of meshes for line contact."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,8 @@ class MeshSettings:
     """
 
     level: Level = "standard"
-    """Mesh level: `quick` for orientation, `standard` for results, `fine` for reference."""
+    """Mesh level: `quick` for orientation, `standard` for results, `fine` for reference; `line` for line contact, which
+    does not resolve the width of the contact (docs/line_contact.md)."""
     elements_per_contact_width: float | None = None
     """Elements across the Hertz width 2b_H; None: 1.7, 3 or 6 by the level, at least 3 on a stiff pinion."""
     shape: CellShape = "hexahedron"
@@ -50,6 +55,8 @@ class MeshSettings:
         one_of("mesh level", self.level, LEVELS)
         one_of("mesh shape", self.shape, SHAPES)
         one_of("mesh order", self.order, (1, 2))
+        if self.level == "line" and (self.shape, self.order, self.elements_per_contact_width) != LINE_CELLS:
+            refuse("level", 'hexahedra of order 2 beside level "line", and nothing else', self, "leave the others out")
         if self.two_level and (self.shape, self.order) != ("hexahedron", 2):
             remedy = "leave them out, or two_level"
             refuse("two_level", "hexahedra of order 2", Words(f"{self.shape}, order {self.order}"), remedy)
@@ -142,6 +149,8 @@ class GearProblem:
         if self.mesh.two_level and (self.options.whole_gears or self.options.fine_body):
             remedy = "leave out one of the two: they are the long way round that two_level saves"
             refuse("two_level", "without whole_gears and fine_body", self.options, remedy)
+        if self.is_line and self.options.whole_gears:
+            refuse("whole_gears", "sectors of gears for line contact", self.options, "leave it out, or the level")
 
     def _checked_flank(self, gear: Member) -> FlankChart | None:
         """The chart of a gear from the base circle on. Raises TableError where it does not fit the gear."""
@@ -172,6 +181,11 @@ class GearProblem:
     def base_radius(self) -> float:
         """Base radius of the gear with the torque [mm]."""
         return self.pair.gears[self.torque_on].base_radius
+
+    @property
+    def is_line(self) -> bool:
+        """Whether it is solved in line contact."""
+        return self.mesh.level == "line"
 
     @property
     def is_plane(self) -> bool:

@@ -24,7 +24,7 @@ The cost of condensing and of the ring is measured in docs/benchmark.md.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -62,6 +62,18 @@ class MappedNodes:
         """Functionals of displacements before they are turned by `turn` (d, d)."""
         axes = np.broadcast_to(turn, (len(self.nodes), *turn.shape)) if self.map is None else self.map.axes @ turn
         return replace(self, map=JumpMap(None if self.map is None else self.map.projection, axes))
+
+
+@dataclass(frozen=True, eq=False)
+class DirectedCompliance:
+    """Displacements of the nodes of all flanks along one direction a node, under forces along these."""
+
+    own: Floats
+    """(n, n) of the sector of the loaded tooth [mm/N]."""
+    modes: Floats
+    """(n, r) of the coupling of sectors."""
+    between: Callable[[int, int], Floats]
+    """Displacements (r, r) of the modes of a tooth by forces on those of another one [mm/N]."""
 
 
 class Compliance(Protocol):
@@ -139,6 +151,16 @@ class ChainedCompliance:
                 result[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
                 result[ends[j] : ends[j + 1], ends[i] : ends[i + 1]] = block.T
         return result
+
+    def directed(self, nodes: Ints, axes: Floats) -> DirectedCompliance:
+        """Compliance between some nodes (n,) of each tooth along directions (n, d) in the frame of its sector."""
+        dofs, d = _dofs(nodes, self.dimension), self.dimension
+        right = np.empty((len(dofs), len(nodes)))
+        for j, (node, axis) in enumerate(zip(nodes, axes)):
+            right[:, j] = self._sector.compliance[d * node : d * node + d].T[dofs] @ axis  # C is symmetric
+        own = np.einsum("iaj,ia->ij", right.reshape(len(nodes), d, -1), axes)
+        modes = np.einsum("iar,ia->ir", self._modes[dofs].reshape(len(nodes), d, -1), axes)
+        return DirectedCompliance(own, modes, self._between)
 
     def window(self, parts: Sequence[tuple[int, Ints]]) -> RingWindow:
         """Compliance between some nodes (k,) of some teeth, each at most once. Raises IndexError."""

@@ -18,7 +18,7 @@ from evolvent.gears.problem.load_limits import check_load
 from evolvent.gears.solution.certificates import certify
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent_meshes.input_checks import instance, is_index, number, numbers, refuse
+from evolvent_meshes.input_checks import Words, instance, is_index, number, numbers, refuse
 
 
 class ExtendedChartWarning(UserWarning):
@@ -60,7 +60,7 @@ def solve_single_position(gears: GearModel, angle: float, friction: float = 0.0)
 
     Raises InputError, NotConverged, SearchError, BalanceError.
     """
-    check_condensed(gears)
+    check_resolved(gears)
     first, last = searched_angles(gears)
     wanted = f"a rotation [rad] within one engagement, {first:.4g} to {last:.4g}"
     remedy = f"is it in degrees? Positions repeat with 2π/z_1, {2.0 * np.pi / gears.pair.pinion.z:.4g} rad"
@@ -91,6 +91,14 @@ def check_condensed(gears: GearModel) -> None:
     """Raises InputError unless these are condensed gears."""
     remedy = "write condense(problem)" if isinstance(gears, GearProblem) else "give what condense(problem) returns"
     instance("gears", gears, GearModel, remedy)
+
+
+def check_resolved(gears: GearModel) -> None:
+    """Raises InputError unless these are condensed gears whose contact is resolved."""
+    check_condensed(gears)
+    if gears.is_line:
+        remedy = 'condense them with MeshSettings("quick"), or compute dynamics.mesh_excitation of these'
+        refuse("gears", "gears whose contact is resolved", Words('gears of mesh level "line"'), remedy)
 
 
 def check_friction(friction: float) -> None:

@@ -22,7 +22,7 @@ from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER, cells_a
 from evolvent.gears.pressure.line_peaks import LinePeak
 from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.solution.certified_pitch import certified_pitch
-from evolvent.gears.solution.solver import check_condensed, check_friction, check_frictions, check_positions
+from evolvent.gears.solution.solver import check_friction, check_frictions, check_positions, check_resolved
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.solution.pitch_row import PitchRow
@@ -151,7 +151,7 @@ def solve_pitches(
     deflected flanks. positions: steps of the pitch. Warns by CoarseContactWarning of a contact that is fewer than two
     elements wide. Raises InputError, NotConverged, SearchError, BalanceError.
     """
-    check_condensed(gears)
+    check_resolved(gears)
     check_frictions(frictions)
     check_positions(positions)
     pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches)

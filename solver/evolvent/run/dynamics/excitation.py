@@ -10,7 +10,14 @@ from functools import cache
 import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, certify_torques, mesh_of, solved_figures
+from evolvent.dynamics.excitation.loaded_mesh import (
+    Figures,
+    LoadedMesh,
+    certify_torques,
+    in_line_contact,
+    mesh_of,
+    solved_figures,
+)
 from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.design_load import EXCITATION_FACTS, excitation_facts
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows
@@ -62,14 +69,15 @@ def solved_excitation(call: Call, loads: SceneTorques) -> SolvedExcitation:
     problem = loads.problem
     angles = np.array(uniform_pitch(problem.pair.pinion.z, loads.scene.sweep.positions).angles)
     unloaded = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
-    loaded, timings = timed_pitch(call, loads, angles, OWN)
+    whole, timings = timed_pitch(call, loads, angles, OWN)
+    loaded, left_out = in_line_contact(whole, min(loads.problem.torque, loads.torques[-1]))
     again = call.companion(loads.scene, lambda: loaded_pitch(call, loads, angles, COMPANION))
-    coarse = None if again.value is None else MeshExcitation(unloaded, again.value)
+    coarse = None if again.value is None else MeshExcitation(unloaded, again.value.lightest(len(loaded.torques)))
     companion = CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements, again.reason)
     mended = loaded.deflected and not problem.options.deflected_flanks
     own = MeshExcitation(unloaded, loaded)
     doubtful = large_bars(harmonic_rows(own, companion)) if coarse is not None else ()
-    said = loads.warnings, [ON_DEFLECTED] * mended, filter(None, [again.reason]), doubtful
+    said = loads.warnings, [ON_DEFLECTED] * mended, filter(None, [left_out, again.reason]), doubtful
     return SolvedExcitation(
         own, companion, replace(timings, error_bars=again.seconds), tuple(each for part in said for each in part)
     )

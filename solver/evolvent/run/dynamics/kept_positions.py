@@ -45,7 +45,7 @@ class KeptPositions:
         return replace(self, name=self.name.replace(*DEFLECTED))
 
     def read(self) -> dict[int, Floats]:
-        """Number of a position -> (m, 4) figures under each torque (`figures_of`); none where there is no file. Raises
+        """Number of a position -> (m, 5) figures under each torque (`figures_of`); none where there is no file. Raises
         ArchiveError where it is that of other gears, torques or positions."""
         return self.store.read(self.name, self._figures) or {}
 

@@ -47,7 +47,10 @@ class SceneTorques:
 
     @property
     def elements(self) -> tuple[float, ...]:
-        """(m,) elements across the Hertz width, which grows with the square root of the torque."""
+        """(m,) elements across the Hertz width, which grows with the square root of the torque; none in line contact.
+        """
+        if self.problem.is_line:
+            return ()
         own = elements_per_contact_width(self.problem, is_two_level(self.problem))
         return tuple(own * math.sqrt(torque / self.problem.lightest.torque) for torque in self.torques)
 

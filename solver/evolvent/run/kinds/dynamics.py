@@ -46,6 +46,7 @@ class Dynamics(Computation[SolvedDynamics]):
 
     name: ClassVar[str] = "dynamics"
     command: ClassVar[str] = "dynamics"
+    in_line_contact: ClassVar[bool] = True
     outputs: ClassVar[Outputs] = Outputs(
         tuple(table.name for table in TABLES), (EXCITATION_PICTURE, *VIBRATION_PICTURES), stored=KEPT,
         lines=summary_lines,

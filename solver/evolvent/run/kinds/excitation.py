@@ -26,6 +26,7 @@ class Excitation(Computation[SolvedExcitation]):
     """The scene under its torques."""
     name: ClassVar[str] = "excitation"
     command: ClassVar[str] = "excitation"
+    in_line_contact: ClassVar[bool] = True
     outputs: ClassVar[Outputs] = Outputs(
         tuple(table.name for table in EXCITATION_TABLES), (EXCITATION_PICTURE,), stored=KEPT, lines=excitation_lines
     )

@@ -36,7 +36,7 @@ class MaterialSection(SceneSection):
     wheel: GearMaterialSection = GearMaterialSection()
 
 
-Level = Literal["quick", "standard", "fine"]
+Level = Literal["line", "quick", "standard", "fine"]
 FEWEST_ELEMENTS = 0.5
 """Smallest number of elements across the contact width."""
 
@@ -53,8 +53,8 @@ class MeshSection(SceneSection):
 
     level: Level = key(
         "how fine",
-        '"quick", "standard" or "fine"',
-        "quick is for orientation, standard for results",
+        '"line", "quick", "standard" or "fine"',
+        "quick is for orientation, standard for results; line does not resolve the contact's width",
         default="standard",
     )
     elements_per_contact_width: float | None = key(

@@ -11,7 +11,7 @@ import numpy as np
 
 from evolvent.fem.material import STEEL, Material
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.solution.solver import check_condensed, check_friction
+from evolvent.gears.solution.solver import check_friction, check_resolved
 from evolvent.results.solution.pitch import PitchSolution
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, fatigue_of_both, flank_fatigue
@@ -189,7 +189,7 @@ def pitch_fatigue(
 
     Raises InputError.
     """
-    check_condensed(gears)
+    check_resolved(gears)
     _check_settings(settings)
     solved = members("pitches", pitches, (PitchSolution,), "pitch_fatigue(gears, solve_pitches(gears, [0.0, 0.1]))")
     if not solved:

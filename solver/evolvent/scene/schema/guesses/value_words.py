@@ -9,6 +9,7 @@ VALUE_WORDS: tuple[tuple[str, Any], ...] = (
     ("driving driver input gear1 gear_1 small_gear", "pinion"),
     ("medium normal default middle", "standard"), ("coarse low draft rough", "quick"),
     ("high finest very_fine extra_fine", "fine"),
+    ("line_contact lines thin_slice strip slices", "line"),
     ("hex hexa hex8 hex20 hex27 hexahedra hexahedral brick c3d8 c3d20", "hexahedron"),
     ("tet tetra tet4 tet10 tetrahedra tetrahedral c3d4 c3d10", "tetrahedron"),
     ("rh r right_hand right_handed righthand", "right"), ("lh l left_hand left_handed lefthand", "left"),

@@ -1,0 +1,119 @@
+"""The loads per length of a line contact in equilibrium with a torque.
+
+    Σ_j B_ij q_j + ℓ_i φ(q_i) + ℓ_i g_i − H_i δ = 0   where q_i > 0, not negative elsewhere
+    Hᵀ q = F,      φ(q) = (2/(π E*)) q [¼ + ln(w/b)],   b = √(4 q ρ / (π E*))
+
+φ is what the half-ellipse of half-width w leaves out of the approach of both bodies: the difference of the mean
+displacements under it and under Hertz' half-ellipse b (Johnson, Contact Mechanics, 1985, 4.2 and 5.6).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from evolvent.contact.newton.snes import NotConverged
+from evolvent_meshes.arrays import Bools, Floats
+
+STEPS, CLOSE = 60, 1e-10
+"""Most Newton steps, and the change of the loads at which they end, over the largest load."""
+LEAST = 1e-6
+"""Least load per length, over the mean one, at which the derivative of φ is taken."""
+
+
+WIDEST = 0.75
+"""Largest half-width b of the contact over w: from e^(−¼) = 0.78 on φ would fall with the load. Beyond, b is taken as
+that of w; what is computed then is no line contact (`LinePosition.under`)."""
+
+
+@dataclass(frozen=True, eq=False)
+class LineSystem:
+    """A position of m stations, under any torque."""
+
+    B: Floats
+    """(m, m) compliance between stations."""
+    length: Floats
+    """(m,) integral ℓ of each hat [mm]."""
+    gap: Floats
+    """(m,) mean of the gap under each hat [mm]."""
+    radius: Floats
+    """(m,) relative radius of curvature ρ [mm]."""
+    log_width: Floats
+    """(m,) mean of ln w, with w in mm."""
+    H: Floats
+    """(m,) work of a unit approach along the line of action on a unit load per length [mm]."""
+    modulus: float
+    """Contact modulus E* [MPa]."""
+
+
+
+@dataclass(frozen=True, eq=False)
+class LineEquilibrium:
+    """Equilibrium of a line contact."""
+
+    load: Floats
+    """(m,) load per length q [N/mm]."""
+    approach: float
+    """δ along the line of action, in the transverse section [mm]."""
+    stiffness: float
+    """Tangent stiffness dF/dδ [N/mm]."""
+    iterations: int
+    """Number of Newton steps."""
+
+
+def half_width(load: Floats, radius: Floats, modulus: float) -> Floats:
+    """Half-width b of the contact [mm] under loads per length [N/mm], with relative radii of curvature [mm] of the same
+    shape and E* [MPa] (Johnson, 4.43)."""
+    return np.asarray(np.sqrt(4.0 * load * radius / (math.pi * modulus)))
+
+
+def line_equilibrium(system: LineSystem, force: float) -> LineEquilibrium:
+    """Equilibrium under a force F along the line of action in the transverse section [N]. Raises NotConverged."""
+    L, H, c = system.length, system.H, 2.0 / (math.pi * system.modulus)
+    mean = force / float(H.sum())
+    q = _on_springs(system, force)
+    active = q > 0.0
+    for step in range(1, STEPS + 1):
+        bounded = np.maximum(q, LEAST * mean)
+        narrower = system.log_width - np.log(half_width(bounded, system.radius, system.modulus))  # ln(w/b)
+        local = c * (0.25 + np.maximum(narrower, -math.log(WIDEST)))
+        logarithmic = 0.5 * c * (narrower > -math.log(WIDEST))
+        matrix, a = _matrix(system, active, L * (local - logarithmic)), np.flatnonzero(active)
+        right = np.append(-L[a] * (system.gap[a] + logarithmic[a] * bounded[a]), force)
+        solution = np.linalg.solve(matrix, right)
+        new, δ = np.zeros_like(q), float(solution[-1])
+        new[a] = solution[:-1]
+        residual = system.B @ np.maximum(new, 0.0) + L * system.gap - H * δ
+        change, q = float(np.abs(new - q).max()), np.maximum(new, 0.0)
+        now = np.where(active, new > 0.0, residual < 0.0)
+        if not now.any():
+            break
+        if (now == active).all() and change <= CLOSE * float(q.max()):
+            unit = np.linalg.solve(matrix, np.append(np.zeros(len(a)), 1.0))
+            return LineEquilibrium(q, δ, 1.0 / float(unit[-1]), step)
+        active = now
+    raise NotConverged(f"line contact: wanted loads in equilibrium after {STEPS} steps, found them still changing")
+
+
+def _on_springs(system: LineSystem, force: float) -> Floats:
+    """Loads (m,) of a foundation of independent springs, each as soft as a station under equal loads on all of them."""
+    L, H, softness = system.length, system.H, system.B.sum(axis=1)
+
+    def loads(δ: float) -> Floats:
+        return np.maximum(H * δ - L * system.gap, 0.0) / softness
+
+    touch = L * system.gap / H
+    stiff = float(H @ (H / softness))
+    low, high = float(touch.min()), float(touch.max()) + 2.0 * force / stiff
+    return loads(float(brentq(lambda δ: float(H @ loads(δ)) - force, low, high)))
+
+
+def _matrix(system: LineSystem, active: Bools, diagonal: Floats) -> Floats:
+    a = np.flatnonzero(active)
+    T = np.zeros((len(a) + 1, len(a) + 1))
+    T[:-1, :-1] = system.B[np.ix_(a, a)] + np.diag(diagonal[a])
+    T[:-1, -1], T[-1, :-1] = -system.H[a], system.H[a]
+    return T

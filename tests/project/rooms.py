@@ -56,7 +56,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
     ),
     "gears.line": (
-        "meshes", "meshes.gears", "fem", "contact.newton", "gears.ring", "gears.two_level", "gears",
+        "meshes", "meshes.gears", "fem", "contact", "contact.newton", "gears.ring", "gears.two_level", "gears",
     ),
     "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.solution": (
@@ -148,8 +148,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.*", "dynamics", "wear", "wear.gears",
     ),
     "check": (
-        "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears.problem", "gears.meshing",
-        "gears.pressure", "dynamics.oscillator", "dynamics", "strength.fatigue", "scene", "scene.schema",
+        "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears.problem", "gears.meshing", "gears",
+        "gears.line", "gears.sweep", "gears.pressure", "dynamics.oscillator", "dynamics", "strength.fatigue", "scene",
+        "scene.schema",
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",

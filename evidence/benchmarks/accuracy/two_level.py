@@ -19,7 +19,7 @@ from evidence.robustness.campaigns.random_scenes import random_scene
 from evidence.scenes import SPUR, WHOLE_WIDTH, helical_pair_of_width
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.flank_levels import levelled_sector
-from evolvent.gears.problem.gear_problem import LEVELS, GearOptions, GearProblem, MeshSettings
+from evolvent.gears.problem.gear_problem import RESOLVED, GearOptions, GearProblem, MeshSettings
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.scene.gear_problem import gear_problem
@@ -188,7 +188,7 @@ def _share(result: PositionResult, tooth: int) -> float:
 
 BOTH = (0.0, 0.3)
 FULL = Size(
-    against_hertz=tuple(yang_case(MeshSettings(level), WHOLE_WIDTH, (0.0,)) for level in LEVELS),
+    against_hertz=tuple(yang_case(MeshSettings(level), WHOLE_WIDTH, (0.0,)) for level in RESOLVED),
     compared=(
         yang_case(MeshSettings("quick"), WHOLE_WIDTH, BOTH),
         replace(yang_case(MeshSettings("standard"), NARROW, BOTH), positions=5),

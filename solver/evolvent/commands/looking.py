@@ -39,6 +39,9 @@ def check(
         Path | None, typer.Option("--out", metavar="FILE.png", help="Picture of the tooth forms.", parser=given_path)
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Write over FILE.png.")] = False,
+    contact: Annotated[
+        bool, typer.Option("--contact", help="Compute the pitch in line contact, too: in half a minute or less.")
+    ] = False,
 ) -> None:
     """Validate a scene, print what follows from it.
 
@@ -51,6 +54,10 @@ def check(
         if out is not None:
             _require_new(out, ".png", overwrite)
         typer.echo(overview(loaded))
+        if contact:
+            from evolvent.check.contact_rows import contact_table
+
+            typer.echo(f"\n{contact_table(loaded)}")
         if out is not None:
             from evolvent.results.drawing.style import png_of
             from evolvent.results.drawing.tooth_form import tooth_form_figure

@@ -19,6 +19,7 @@ from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
+from evolvent.gears.line.line_gears import MOST_ON_EDGES
 from evolvent.gears.solution.certificates import certify, energy_imbalance, require_balance
 from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
 from evolvent.gears.sweep.parallel_sweep import division
@@ -35,9 +36,6 @@ Figures = Mapping[int, Floats]
 COLUMNS = 5
 """Number of figures of a position under a torque: transmission error, stiffness, pinion torque, stored power, part of
 the load on edges in line contact."""
-MOST_ON_EDGES = 1e-2
-"""Largest part of the load that the edges of tips may bear in line contact. Where they bear 3.5 % of it (Yang's pair
-without relief), the transmission error is 0.6 % off."""
 
 
 class EdgeContact(ResultError):
@@ -114,7 +112,7 @@ def solved_figures(
 
 def _resolved_figures(models: Sequence[GearModel], angles: Floats) -> Iterator[Floats]:
     """Figures (m, 5) of positions one after the other, under each torque, with the contact resolved."""
-    for row in _searched(models, angles):
+    for row in searched_positions(models, angles):
         yield np.array([figures_of(*each) for each in zip(models, row)])
 
 
@@ -174,7 +172,7 @@ def loaded_mesh_again(
     models = under_torques(model, torques)
     own = angles[division(len(angles), comm.size)[comm.rank]]
     before = [[row.get(torque) for torque in torques] for row in kept] if kept is not None else None
-    rows = together(comm, lambda: tuple(_searched(models, own, before)))
+    rows = together(comm, lambda: tuple(searched_positions(models, own, before)))
     figures = [np.array([figures_of(*each) for each in zip(models, row)]) for row in rows]
     found = dict(enumerate(each for part in comm.allgather(figures) for each in part))
     mesh = mesh_of(found, torques, model.base_radius, angles)
@@ -205,7 +203,7 @@ def equilibrium(model: GearModel, position: SharedPosition) -> PairRotation:
     return position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
 
 
-def _searched(
+def searched_positions(
     models: Sequence[GearModel], angles: Floats,
     kept: Sequence[Sequence[SharedPosition | None]] | None = None,
 ) -> Iterator[tuple[SharedPosition, ...]]:

@@ -17,7 +17,9 @@ from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.input_checks import Words, both_gears, instance, number, one_of, refuse
 
 Level = Literal["line", "quick", "standard", "fine"]
-LEVELS: tuple[Level, ...] = ("line", "quick", "standard", "fine")
+RESOLVED: tuple[Level, ...] = ("quick", "standard", "fine")
+"""Levels that resolve the width of the contact."""
+LEVELS: tuple[Level, ...] = ("line", *RESOLVED)
 CellShape = Literal["hexahedron", "tetrahedron"]
 SHAPES: tuple[CellShape, ...] = ("hexahedron", "tetrahedron")
 WINDOW = 1.6

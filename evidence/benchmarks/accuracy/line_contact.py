@@ -1,0 +1,243 @@
+"""`python -m evidence.benchmarks.accuracy.line_contact [--small]`: line contact beside the resolved contact, without
+friction, for docs/line_contact.md. Pairs with relief, misaligned ones, random ones; from light loads to the whole one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from evidence.benchmarks.accuracy.line_pairs import ALL, Case, random_cases
+from evidence.checkout import DOCS
+from evidence.tables import Column, Table, write_rows
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh, loaded_mesh, searched_positions, under_torques
+from evolvent.dynamics.results.curves import LOADED, CoarseExcitation, pitch_curves
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.line.line_gears import LineGears
+from evolvent.gears.line.line_result import LineResult
+from evolvent.gears.meshing.companion_meshes import companion_mesh
+from evolvent.gears.pressure.contact_slices import Slices, slices
+from evolvent.gears.pressure.line_peaks import pooled_peaks
+from evolvent.gears.pressure.pitch_pressure import facets_of
+from evolvent.gears.problem.gear_problem import MeshSettings
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.sweep.position_result import PositionResult, position_result
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
+from evolvent_meshes.arrays import Floats
+
+NEAR_END = 0.75
+"""Part of half the face width beyond which slices count as those at its ends."""
+
+
+@dataclass(frozen=True)
+class LineRow:
+    """Deviations of the line contact of a pair under a torque from the resolved contact, at the same positions."""
+
+    pair: str
+    level: str
+    """Level at which the contact was resolved."""
+    torque_Nm: float
+    positions: int
+    deflection_um: float
+    """Mean transmission error less the unloaded one."""
+    position_percent: float
+    """Largest deviation of the transmission error of a position, of the mean deflection."""
+    peak_to_peak_um: float
+    """Peak-to-peak transmission error of the resolved contact."""
+    peak_to_peak_off_um: float
+    tooth_force_percent: float
+    """Largest deviation of a tooth pair's force, of the load."""
+    line_load_percent: float
+    """Root mean square of the deviations of line loads in the layers of the resolved mesh, of the largest line load."""
+    line_load_end_percent: float
+    """The same in the outer layers of the face alone; nan in the plane."""
+    face_load_factor: float
+    """K_Hβ of the resolved contact; 1 in the plane."""
+    face_load_percent: float
+    stiffness_percent: float
+    """Largest deviation of a position's tangent stiffness."""
+    pressure_percent: float
+    """Deviation of the peak pressure of layers that bears on no edge, nine in ten."""
+    on_edges_percent: float
+    """Largest part of the load that edges of tips bear in line contact."""
+    inside: int
+    """Positions whose error bar holds the deviation of the transmission error."""
+    resolved_seconds: float
+    """Processor time of condensing and positions, all torques of the pair."""
+    line_seconds: float
+
+
+TABLE = Table(LineRow, (
+    Column("pair", "pair", words=True), Column("resolved at", "level", words=True), Column("N·m", "torque_Nm", ".4g"),
+    Column("deflection [µm]", "deflection_um", ".3g"), Column("of a position [%]", "position_percent", ".2f"),
+    Column("peak to peak [µm]", "peak_to_peak_um", ".3g"), Column("off by [µm]", "peak_to_peak_off_um", ".3f"),
+    Column("tooth force [% of load]", "tooth_force_percent", ".2f"),
+    Column("line load, rms [%]", "line_load_percent", ".2f"), Column("at ends [%]", "line_load_end_percent", ".1f"),
+    Column("K_Hβ", "face_load_factor", ".3f"), Column("off by [%]", "face_load_percent", ".2f"),
+    Column("stiffness [%]", "stiffness_percent", ".2f"), Column("p_0, nine in ten [%]", "pressure_percent", ".1f"),
+    Column("load on edges [%]", "on_edges_percent", ".2f"),
+    Column("bars hold", lambda row: f"{row.inside} of {row.positions}", words=True),
+))
+
+
+def case_rows(case: Case) -> Iterator[LineRow]:
+    """A row a torque."""
+    problem = case.problem
+    angles = np.array(uniform_pitch(problem.pair.pinion.z, case.positions).angles)
+    torques = [problem.torque * percent / 100.0 for percent in case.percents]
+    begin = time.process_time()
+    model = prepare_model(replace(problem, mesh_torques=(torques[0], torques[-1]))).model
+    resolved = list(zip(*_resolved(model, torques, angles)))
+    after = time.process_time()
+    on_lines = replace(problem, mesh=MeshSettings("line"))
+    lines = prepare_model(on_lines).model
+    mesh = loaded_mesh(lines, torques, angles)
+    seconds = after - begin, time.process_time() - after
+    coarse = loaded_mesh(prepare_model(on_lines, mesh=companion_mesh).model, torques, angles)
+    unloaded = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
+    excitation = MeshExcitation(unloaded, mesh)
+    companion = CoarseExcitation(MeshExcitation(unloaded, coarse))
+    bars = [curves[LOADED].bars for curves in pitch_curves(excitation, companion)]
+    gears = LineGears.of(lines)
+    positions = [gears.position(float(angle)) for angle in angles]
+    for j, torque in enumerate(torques):
+        force = torque / lines.base_radius / lines.width_factor
+        found = [LineResult.of(position, force) for position in positions]
+        both = _Both(case, model, list(resolved[j]), found, mesh, j)
+        yield both.row(torque, unloaded, bars[j], seconds)
+
+
+def _resolved(model: GearModel, torques: Sequence[float], angles: Floats) -> Iterator[list[PositionResult]]:
+    """Positions one after the other, each under all torques."""
+    models = under_torques(model, torques)
+    for row in searched_positions(models, angles):
+        yield [
+            position_result(own, each.contact, each.smooth, 0.0, each.stiffness, 0) for own, each in zip(models, row)
+        ]
+
+
+@dataclass(frozen=True, eq=False)
+class _Both:
+    """A pair under a torque, resolved and in line contact."""
+
+    case: Case
+    model: GearModel
+    resolved: list[PositionResult]
+    lines: list[LineResult]
+    mesh: LoadedMesh
+    number: int
+    """Of the torque."""
+
+    def row(self, torque: float, unloaded: Floats, bars: Floats, seconds: tuple[float, float]) -> LineRow:
+        error = np.array([result.transmission_error for result in self.resolved])
+        off = self.mesh.errors[:, self.number] - error
+        deflection = float(np.mean(error - unloaded))
+        stiffness = np.array([result.stiffness for result in self.resolved]) * self.model.width_factor
+        materials = self.model.bodies[0].material, self.model.bodies[1].material
+        cuts = [slices(result, facets_of(self.model), materials) for result in self.resolved]
+        loads, ends, pressures = self._slices(cuts)
+        factors = self._face_load(cuts)
+        edges = self.mesh.on_edges
+        assert edges is not None
+        return LineRow(
+            self.case.name, self.case.problem.mesh.level, 1e-3 * torque, len(error), 1e3 * deflection,
+            100.0 * float(np.abs(off).max()) / deflection, 1e3 * float(np.ptp(error)),
+            1e3 * float(np.ptp(self.mesh.errors[:, self.number]) - np.ptp(error)), 100.0 * self._tooth_forces(),
+            100.0 * loads, 100.0 * ends, factors[0], 100.0 * (factors[1] / factors[0] - 1.0),
+            100.0 * float(np.abs(self.mesh.stiffness[:, self.number] / stiffness - 1.0).max()), 100.0 * pressures,
+            100.0 * float(edges[:, self.number].max()), int((1e3 * np.abs(off) <= bars).sum()), *seconds,
+        )
+
+    def _tooth_forces(self) -> float:
+        """Largest deviation of a tooth pair's force, over the load."""
+        worst = 0.0
+        for result, line in zip(self.resolved, self.lines):
+            c = result.contact
+            whole = float((c.weights * c.pressure).sum())
+            for tooth in {*c.tooth.tolist(), *line.teeth}:
+                own = line.force(tooth) if tooth in line.teeth else 0.0
+                worst = max(worst, abs(own - c.normal_force(tooth)) / whole)
+        return worst
+
+    def _slices(self, cuts: Sequence[Slices]) -> tuple[float, float, float]:
+        """Root mean square of the deviations of line loads, over the largest one: of all slices, and of those at the
+        ends of the face; and nine in ten of the deviations of peak pressures."""
+        off, at_end, peaks, largest = [], [], [], 0.0
+        half = 0.5 * self.case.problem.pair.face_width
+        for cut, line in zip(cuts, self.lines):
+            largest = max(largest, float(cut.line_load.max()))
+            fitted = pooled_peaks(cut)
+            for tooth in np.unique(cut.tooth):
+                own = cut.tooth == tooth
+                load = self._mean_load(line, int(tooth), cut.z[own], cut.width[own])
+                off.append(load - cut.line_load[own])
+                at_end.append(np.abs(cut.z[own]) > NEAR_END * half)
+                known = np.isfinite(fitted[own]) & (load > 0.1 * largest)
+                radius = self._radius(line, int(tooth), cut.z[own])
+                p0 = np.sqrt(load * line.position.system.modulus / (np.pi * radius))
+                peaks.append(np.abs(p0 / fitted[own] - 1.0)[known])
+        every, ends, pressures = np.concatenate(off), np.concatenate(at_end), np.concatenate(peaks)
+        rms = [float(np.sqrt(np.mean(part**2))) / largest if len(part) else np.nan for part in (every, every[ends])]
+        return rms[0], rms[1], float(np.quantile(pressures, 0.9)) if len(pressures) else np.nan
+
+    def _mean_load(self, line: LineResult, tooth: int, z: Floats, width: Floats) -> Floats:
+        """Mean load per length (k,) of a tooth pair in slices of some extent along z."""
+        if tooth not in line.teeth:
+            return np.zeros_like(z)
+        if self.case.problem.is_plane:
+            return np.full_like(z, line.force(tooth))
+        force = line.force_below(tooth, z + 0.5 * width) - line.force_below(tooth, z - 0.5 * width)
+        return force * line.cosine / width
+
+    def _radius(self, line: LineResult, tooth: int, z: Floats) -> Floats:
+        """Relative radius of curvature (k,) of a tooth pair's line at heights (k,)."""
+        own = line.position.stations.tooth == tooth
+        if not own.any():
+            return np.full_like(z, np.nan)
+        return np.interp(z, line.position.stations.z[own], line.position.system.radius[own])
+
+    def _face_load(self, cuts: Sequence[Slices]) -> tuple[float, float]:
+        """K_Hβ of both, on the layers of the resolved mesh, in the mean over the positions."""
+        if self.case.problem.is_plane:
+            return 1.0, 1.0
+        z, first = np.unique(np.round(np.concatenate([cut.z for cut in cuts]), 6), return_index=True)
+        width = np.concatenate([cut.width for cut in cuts])[first]
+        resolved, lines = np.zeros_like(z), np.zeros_like(z)
+        for cut, line in zip(cuts, self.lines):
+            np.add.at(resolved, np.searchsorted(z, np.round(cut.z, 6)), cut.line_load)
+            lines += sum(self._mean_load(line, tooth, z, width) for tooth in line.teeth)
+        first_factor, second = (float(each.max() * width.sum() / (each @ width)) for each in (resolved, lines))
+        return first_factor, second
+
+
+def said(docs: Path) -> str:
+    """The table of docs/line_contact.md."""
+    return TABLE.markdown(TABLE.read(docs / "line_contact" / "accuracy.csv"))
+
+
+def main() -> None:
+    """Measures all pairs; each row is kept as soon as it is there."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--small", action="store_true", help="the first pair alone, to see that everything works")
+    parser.add_argument("--pair", help="pairs whose name begins so; the others keep their rows")
+    parser.add_argument("--out", type=Path, default=DOCS)
+    given = parser.parse_args()
+    path, cases = given.out / "line_contact" / "accuracy.csv", [*ALL, *random_cases()]
+    chosen = cases[:1] if given.small else [case for case in cases if case.name.startswith(given.pair or "")]
+    rows = {case.name: [row for row in TABLE.read(path) if row.pair == case.name] for case in cases}
+    for case in chosen:
+        rows[case.name] = []
+        for row in case_rows(case):
+            rows[case.name].append(row)
+            print(row, flush=True)
+        write_rows(path, [row for each in rows.values() for row in each])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+"""Figures of a line contact in equilibrium: forces of the tooth pairs, load over heights, peak pressure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.contact.hertz import line_peak_pressure
+from evolvent.gears.line.line_equilibrium import LineEquilibrium
+from evolvent.gears.line.line_gears import LinePosition
+from evolvent_meshes.arrays import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class LineResult:
+    """A position of a line contact under one torque; per mm of face width in the plane."""
+
+    position: LinePosition
+    """The position, under any torque."""
+    equilibrium: LineEquilibrium
+    """Loads per length in equilibrium with the torque."""
+    cosine: float
+    """cos β_b: height over length of the contact lines."""
+
+    @staticmethod
+    def of(position: LinePosition, force: float) -> LineResult:
+        """The position under a force along the line of action, in the transverse section [N; N/mm in the plane].
+
+        Raises NotConverged, TooWide.
+        """
+        system = position.system
+        return LineResult(position, position.under(force), float((system.H / system.length)[0]))
+
+    @property
+    def teeth(self) -> list[int]:
+        """Tooth pairs with a contact line, ascending."""
+        return [int(tooth) for tooth in np.unique(self.position.stations.tooth)]
+
+    def force(self, tooth: int) -> float:
+        """Normal force of a tooth pair [N; N/mm in the plane]."""
+        stations = self.position.stations
+        return float((stations.lengths * self.equilibrium.load)[stations.tooth == tooth].sum())
+
+    def force_below(self, tooth: int, heights: Floats) -> Floats:
+        """Normal force (k,) [N] of a tooth pair below heights (k,) [mm], in space. Exact: loads are linear between the
+        stations."""
+        stations = self.position.stations
+        own = stations.tooth == tooth
+        z, q = stations.z[own], self.equilibrium.load[own]
+        whole = np.append(0.0, np.cumsum(0.5 * (q[1:] + q[:-1]) * np.diff(z)))
+        at = np.clip(heights, z[0], z[-1])
+        i = np.clip(np.searchsorted(z, at, side="right") - 1, 0, len(z) - 2)
+        slope = (q[i + 1] - q[i]) / (z[i + 1] - z[i])
+        step = at - z[i]
+        return np.asarray((whole[i] + step * (q[i] + 0.5 * slope * step)) / self.cosine)
+
+    @property
+    def peak_pressure(self) -> Floats:
+        """Hertz' p_0 (m,) [MPa] of the stations' loads per length, with the relative radii of curvature there."""
+        system = self.position.system
+        return np.asarray(line_peak_pressure(self.equilibrium.load, system.radius, system.modulus))
+
+    @property
+    def largest_pressure(self) -> float:
+        """Largest p_0 [MPa] of stations that bear on no edge of a tip; 0 where all do."""
+        position = self.position
+        at_edge = position.stations.mean(position.bears_on_edge(self.equilibrium.load).astype(float)) > 0.0
+        return float(np.where(at_edge, 0.0, self.peak_pressure).max())
+
+    def load_at(self, tooth: int, heights: Floats) -> Floats:
+        """Load per length (k,) [N/mm] of a tooth pair at heights (k,) [mm]; 0 beyond its line."""
+        stations = self.position.stations
+        own = stations.tooth == tooth
+        return np.interp(heights, stations.z[own], self.equilibrium.load[own], left=0.0, right=0.0)
+
+    @property
+    def transmission_error(self) -> float:
+        """Transmission error r_b1 φ_1 − r_b2 φ_2 [mm]."""
+        return self.equilibrium.approach

@@ -1,0 +1,42 @@
+"""`evolvent check --contact`: figures of the pitch in line contact."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from evolvent.check.contact_rows import contact_table
+from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
+from tests.support.gear_cases import model_of, spur_scene
+
+RELIEVED = tuple(
+    f"{gear}.{key}" for gear in ("pinion", "wheel") for key in ("tip_relief_um=20", 'tip_relief_form="parabolic"')
+)
+
+
+def figure(text: str, name: str) -> float:
+    found = re.search(rf"^  {name}.* (\S+)$", text, re.MULTILINE)
+    assert found is not None
+    return float(found[1])
+
+
+def test_figures_are_those_of_an_excitation() -> None:
+    """Exact: transmission error and stiffness of `evolvent excitation --level line` at the same positions; K_Hβ is 1 in
+    the plane; the scene's own level is without effect."""
+    text = contact_table(spur_scene(*RELIEVED, "sweep.positions=8"))
+    angles = 2.0 * np.pi / 50.0 * np.arange(8) / 8
+    mesh = loaded_mesh(model_of(spur_scene(*RELIEVED, "mesh.level=line")), [170e3], angles)
+    assert figure(text, "transmission error, mean") == pytest.approx(1e3 * mesh.errors.mean(), abs=6e-4)
+    assert figure(text, "transmission error, peak to peak") == pytest.approx(1e3 * np.ptp(mesh.errors), abs=6e-4)
+    assert figure(text, "tangent mesh stiffness, mean") == pytest.approx(1e-3 * mesh.stiffness.mean(), abs=0.06)
+    assert figure(text, "face load factor") == 1.0
+    assert 500.0 < figure(text, "largest pressure by Hertz, without tips") < 2000.0
+
+
+def test_edges_leave_no_figures() -> None:
+    """Problem: He's pair without relief. The part of the load on edges is there, the figures are not."""
+    text = contact_table(spur_scene("sweep.positions=8"))
+    assert figure(text, "load on edges of tips, at most") > 1.0
+    assert "transmission error" not in text and "tip_relief_um" in text

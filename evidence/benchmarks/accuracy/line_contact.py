@@ -92,7 +92,7 @@ def case_rows(case: Case) -> Iterator[LineRow]:
     angles = np.array(uniform_pitch(problem.pair.pinion.z, case.positions).angles)
     torques = [problem.torque * percent / 100.0 for percent in case.percents]
     begin = time.process_time()
-    model = prepare_model(replace(problem, mesh_torques=(torques[0], torques[-1]))).model
+    model = prepare_model(replace(problem, torque=torques[-1], mesh_torques=(torques[0], torques[-1]))).model
     resolved = list(zip(*_resolved(model, torques, angles)))
     after = time.process_time()
     on_lines = replace(problem, mesh=MeshSettings("line"))

@@ -17,7 +17,7 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.gear_load import GearLoad, gear_load
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, is_two_level, run_mesh
-from evolvent.gears.problem.flank_deviations import FlankChart, FlankCharts
+from evolvent.gears.problem.flank_deviations import FlankCharts
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level_pair import two_level_pair
 from evolvent_meshes.gears.member import Member
@@ -116,8 +116,8 @@ class CondensedGears:
     def under(self, problem: GearProblem) -> Preparation:
         """The gears under the torque of a problem, which is one of those that they are condensed for."""
         pinion, wheel = (
-            _charted(bodies[_omitted(problem, self.finest, member)], chart)
-            for member, bodies, chart in zip(Member, self.bodies, problem.flanks)
+            _with_flank(bodies[_omitted(problem, self.finest, member)], problem, member)
+            for member, bodies in zip(Member, self.bodies)
         )
         model = GearModel(
             problem.pair, (pinion, wheel), problem.contact_teeth, gear_load(problem), problem.window_half_width,
@@ -147,8 +147,7 @@ def condensed_gears(
     mesh: Mesher = run_mesh,
     meshed: Callable[[], None] = lambda: None,
 ) -> CondensedGears:
-    """The gears of problems that differ in their torques and misalignments only and have the same `mesh_torques`,
-    condensed once; see `prepare_model`."""
+    """The gears of problems of one `shared_gears_name`, condensed once; see `prepare_model`."""
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]
@@ -193,6 +192,8 @@ def _condensed(
     return built
 
 
-def _charted(body: GearBody, chart: FlankChart | None) -> GearBody:
-    """The gear with its flank as charted."""
-    return body if chart is None else replace(body, worn=chart.at(body.gear, body.roll_length, body.z))
+def _with_flank(body: GearBody, problem: GearProblem, member: Member) -> GearBody:
+    """The gear with the modifications of a problem, and its flank as charted there."""
+    chart, gear = problem.flanks[member], problem.pair.gears[member]
+    worn = None if chart is None else chart.at(gear, body.roll_length, body.z)
+    return replace(body, gear=gear, worn=worn)

@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from evolvent.gears.gear_model import CondensedGears, Mesher, Preparation, condensed_gears
 from evolvent.gears.meshing.levelled_meshes import is_two_level, run_mesh
+from evolvent.gears.meshing.sector_meshes import unmodified
 from evolvent.gears.problem.gear_problem import GearProblem
 
 
@@ -22,7 +23,7 @@ def under_torques(problem: GearProblem, torques: Sequence[float]) -> list[GearPr
 class SharedGears:
     """Prepares each of some problems, condensing their gears when the first one is asked for.
 
-    problems: alike but for their torques, see `under_torques`, and misalignments, see `shared_gears_name`.
+    problems: alike but for what problems of one `shared_gears_name` may differ in.
     """
 
     def __init__(self, problems: Sequence[GearProblem]) -> None:
@@ -47,7 +48,12 @@ class SharedGears:
 
 def shared_gears_name(problem: GearProblem) -> str:
     """Name of the condensed gears of a problem: problems of one name can have them from one `SharedGears`.
-    They differ in torque and misalignment at most, and have the same `mesh_torques`."""
+    They differ in torque and misalignment at most, and have the same `mesh_torques`; in line contact they may differ in
+    these, too, and in the modifications and charts of their flanks."""
+    if problem.is_line:
+        gears = *map(unmodified, problem.pair.gears), problem.pair.centre_distance
+        alike = gears, problem.materials, problem.options, problem.torque_on, problem.is_plane
+        return hashlib.sha256(repr(("line", alike)).encode()).hexdigest()
     served = (problem.torque, problem.torque) if problem.mesh_torques is None else problem.mesh_torques
     bodies = replace(problem.pair, misalignment_um=0.0), problem.materials, problem.mesh, problem.options
     charts = [None if chart is None else chart.text() for chart in problem.flanks]

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
 from evolvent.gears import gear_model
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.meshing.flank_levels import FlankLevel, LevelledSector, levelled_sector
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, levelled_mesh
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
-from evolvent.gears.shared_gears import SharedGears, under_torques
+from evolvent.gears.shared_gears import SharedGears, shared_gears_name, under_torques
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
@@ -91,3 +92,29 @@ def test_torque_beyond_those_that_the_meshes_serve_is_refused() -> None:
         with pytest.raises(InputError, match="mesh_torques"):
             replace(problems()[0], torque=20e3, mesh_torques=served)
     assert replace(problems()[0], torque=20e3, mesh_torques=(30e3, 30e3)).lightest.torque == 30e3
+
+
+def test_gears_in_line_contact_serve_all_modifications(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: He's pair in line contact with two reliefs and torques. Exact: one name, gears condensed once, and the
+    mesh that each would have alone, 1e-9. Where the contact is resolved they have gears of their own."""
+    calls, condensed = [], gear_model.condensed_gear
+
+    def counted(*given: object, **named: object) -> object:
+        calls.append(given)
+        return condensed(*given, **named)  # type: ignore[arg-type]
+
+    relieved = [
+        gear_problem(spur_scene("mesh.level=line", f"pinion.tip_relief_um={relief}", "wheel.tip_relief_um=25", torque))
+        for relief, torque in ((20, "load.torque_Nm=170"), (30, "load.torque_Nm=90"))
+    ]
+    assert len({shared_gears_name(each) for each in relieved}) == 1
+    resolved = [replace(each, mesh=MeshSettings("quick")) for each in relieved]
+    assert len({shared_gears_name(each) for each in resolved}) == 2
+    angles = 2.0 * np.pi / 50.0 * np.arange(3) / 3
+    alone = [loaded_mesh(prepare_model(each, MPI.COMM_SELF).model, [each.torque], angles) for each in relieved]
+    monkeypatch.setattr(gear_model, "condensed_gear", counted)
+    gears = SharedGears(relieved)
+    for problem, wanted in zip(relieved, alone):
+        found = loaded_mesh(gears.prepare(problem, MPI.COMM_SELF).model, [problem.torque], angles)
+        assert found.errors == pytest.approx(wanted.errors, rel=1e-9)
+    assert len(calls) == 2

@@ -35,7 +35,7 @@ Figures = Mapping[int, Floats]
 """Number of a position -> (m, 5) under each torque: `figures_of`."""
 COLUMNS = 5
 """Number of figures of a position under a torque: transmission error, stiffness, pinion torque, stored power, part of
-the load on edges in line contact."""
+the load on edges of tips in line contact; NaN where the contact is resolved."""
 
 
 class EdgeContact(ResultError):
@@ -155,7 +155,8 @@ def mesh_of(
     """Mesh from the figures of all positions. torques: (m,) [N·mm]; radius: base radius of their gear [mm]."""
     figures = np.array([found[i] for i in range(len(angles))])
     ascending = np.array(torques, dtype=float)
-    return LoadedMesh(angles, ascending, radius, figures[..., 0], figures[..., 1], deflected, figures[..., 4])
+    on_edges = None if np.isnan(figures[..., 4]).any() else figures[..., 4]
+    return LoadedMesh(angles, ascending, radius, figures[..., 0], figures[..., 1], deflected, on_edges)
 
 
 def loaded_mesh_again(
@@ -187,15 +188,17 @@ def under_torques(model: GearModel, torques: Sequence[float]) -> list[GearModel]
 
 def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float, float, float, float]:
     """Transmission error [mm] and stiffness [N/mm] of a position, its torque on the pinion, the power that its teeth
-    store (`PositionResult.stored_power`), and 0 for the part of the load on edges in line contact. Raises NotConverged
-    and SearchError on deflected flanks; BalanceError."""
+    store (`PositionResult.stored_power`), and NaN for the part of the load on edges in line contact.
+
+    Raises NotConverged and SearchError on deflected flanks; BalanceError.
+    """
     contact, smooth, stiffness = position.contact, position.smooth, position.stiffness
     if model.deflected:
         found = deflected_equilibrium(model, contact, smooth, 0.0, None, 0.0)
         contact, smooth, stiffness = found.contact, found.equilibrium, found.stiffness
     result = position_result(model, contact, smooth, 0.0, stiffness, 0)
     certify([result])
-    return result.transmission_error, stiffness * model.width_factor, result.torques[0], result.stored_power, 0.0
+    return result.transmission_error, stiffness * model.width_factor, result.torques[0], result.stored_power, np.nan
 
 
 def equilibrium(model: GearModel, position: SharedPosition) -> PairRotation:

@@ -41,6 +41,10 @@ QUANTITIES: dict[str, Callable[[MeshExcitation], Floats]] = {
 BENDS = {UNLOADED: KINK, LOADED: KINK, TANGENT: JUMP, SECANT: KINK}
 """Error of a step's mean over the bend of the step, see `position_spacing`: the tangent stiffness jumps where a tooth
 pair comes into contact, the others have kinks there."""
+LINE_OFF = {LOADED: 2e-3, TANGENT: 5e-3, SECANT: 2e-3}
+LINE_VARIES = {LOADED: 6e-3, TANGENT: 2e-2, SECANT: 6e-3}
+"""Parts by which values of a line contact are off beside the error of its meshes, and by which peak-to-peak values and
+amplitudes are: nine in ten deviations from resolved contacts are smaller (docs/line_contact.md)."""
 NARROW = 1.0
 """Elements across the contact width below which the errors of the mesh are larger than by its rate. The contact's own
 deflection goes with the logarithm of its width, and that of a contact narrower than an element with the element's
@@ -83,21 +87,31 @@ class PitchCurve:
     """Polynomial order of the finite elements."""
     elements: float = math.inf
     """Finite elements across the contact width."""
+    in_line_contact: bool = False
+    """Whether the contact is a line contact, which is off by more than its meshes."""
 
     @property
     def bars(self) -> Floats:
         """Errors (n,) of the mesh at each position; NaN where they are not known."""
         if self.coarse is None:
             return np.full(len(self.values), np.nan)
-        return self._compared(STIFFNESS).of_each(np.abs(self.values))
+        return self._compared(STIFFNESS).of_each(np.abs(self.values)) + self._model(LINE_OFF) * np.abs(self.values)
 
     def mesh_error(self, figure: Reduction) -> float:
         """Error of a figure by the mesh; NaN where it is not known."""
-        return float("nan") if self.coarse is None else self._compared(STIFFNESS).of_figure(figure)
+        if self.coarse is None:
+            return float("nan")
+        return self._compared(STIFFNESS).of_figure(figure) + self._model(LINE_OFF) * abs(figure(self.values))
 
     def varying_error(self, figure: Reduction) -> float:
         """Error by the mesh of a figure that does not depend on the mean of the curve; NaN where it is not known."""
-        return float("nan") if self.coarse is None else self._compared(SHARING).of_varying(figure)
+        if self.coarse is None:
+            return float("nan")
+        return self._compared(SHARING).of_varying(figure) + self._model(LINE_VARIES) * abs(figure(self.values))
+
+    def _model(self, off: Mapping[str, float]) -> float:
+        """Part by which a line contact is off. off: by the quantity."""
+        return off[self.quantity] if self.in_line_contact else 0.0
 
     @property
     def _halvings(self) -> float:
@@ -165,9 +179,12 @@ def pitch_curves(excitation: MeshExcitation, companion: CoarseExcitation) -> Ite
     whole = {name: values(excitation) for name, values in QUANTITIES.items()}
     known = {name: None if coarse is None else values(coarse) for name, values in QUANTITIES.items()}
     count = len(excitation.loaded.forces)
+    line = excitation.loaded.on_edges is not None
     for j, elements in enumerate(companion.elements or (math.inf,) * count):
         others = {name: None if values is None else values[:, j] for name, values in known.items()}
-        yield {name: PitchCurve(name, values[:, j], others[name], order, elements) for name, values in whole.items()}
+        yield {
+            name: PitchCurve(name, values[:, j], others[name], order, elements, line) for name, values in whole.items()
+        }
 
 
 def _amplitude(harmonic: int, values: Floats) -> float:

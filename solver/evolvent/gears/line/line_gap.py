@@ -21,9 +21,11 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
-STEPS = (0.1, 0.05, 0.02, 0.02)
+STEPS = (0.1, 0.1, 0.05, 0.05, 0.02, 0.02)
 """Distances of the three points through which a parabola is fitted, each about the vertex of the one before, over the
-nominal relative radius of curvature."""
+nominal relative radius of curvature. The points lie on both flanks."""
+SMALLEST, FARTHEST = 1e-3, 4.0
+"""Least such distance where the flanks have no room for it, and largest step to a vertex, over the distance."""
 WITHIN = 0.3
 """Largest such distance over that from the base circle, where the involute ends."""
 STRAIGHTEST = 0.1
@@ -62,16 +64,18 @@ def line_gap(flanks: RigidFlanks, stations: Stations, free: Member) -> LineGap:
     gaps = gap_across(flanks, stations, free, arcs[mate])
     place = np.clip(np.zeros_like(radius), low, high)
     for step in STEPS:
-        at = arcs[mate] + place, arcs[free] - place
-        h = np.minimum(step * radius, WITHIN * np.minimum(*at))
-        near, middle, far = gaps(place[:, None] + h[:, None] * np.array([-1.0, 0.0, 1.0])).T
-        slope, curvature = (far - near) / (2.0 * h), (far - 2.0 * middle + near) / h**2
-        vertex = place - slope / np.maximum(curvature, STRAIGHTEST / radius)
-        last, place = place, np.clip(vertex, low, high)
-        move = place - last
-        least = middle + slope * move + 0.5 * curvature * move**2
-    edge, bent = place != vertex, 1.0 / np.maximum(curvature, STRAIGHTEST / radius)
-    return LineGap(least, mate.sign * place, np.where(edge, radius, bent), edge)
+        room = np.minimum(arcs[mate] + place, arcs[free] - place)
+        h = np.clip(0.5 * (high - low), SMALLEST * radius, np.minimum(step * radius, WITHIN * room))
+        middle = np.where(high - low > 2.0 * h, np.clip(place, low + h, high - h), 0.5 * (low + high))
+        before, there, after = gaps(middle[:, None] + h[:, None] * np.array([-1.0, 0.0, 1.0])).T
+        slope, curvature = (after - before) / (2.0 * h), (after - 2.0 * there + before) / h**2
+        bent = np.maximum(curvature, STRAIGHTEST / radius)
+        vertex = middle + np.clip(-slope / bent, -FARTHEST * h, FARTHEST * h)
+        place = np.clip(vertex, low, high)
+        move = place - middle
+        least = there + slope * move + 0.5 * curvature * move**2
+    edge = (vertex <= low) | (vertex >= high)
+    return LineGap(least, mate.sign * place, np.where(edge, radius, 1.0 / bent), edge)
 
 
 def _limits(pair: GearPair, arcs: dict[Member, Floats], mate: Member) -> tuple[Floats, Floats]:

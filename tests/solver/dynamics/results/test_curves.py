@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.dynamics.results.curves import LOADED, TANGENT, PitchCurve
+from evolvent.dynamics.results.curves import LINE_OFF, LINE_VARIES, LOADED, TANGENT, PitchCurve
 from evolvent_meshes.arrays import Floats
 
 
@@ -34,6 +34,17 @@ def test_contacts_narrower_than_an_element_have_wider_bars(elements: float, fact
     bar = PitchCurve(LOADED, fine, coarse, 2, elements).mesh_error(lambda values: float(values.mean()))
     assert bar == pytest.approx(factor * 0.01 * np.log(2.0), rel=1e-9)
     assert bar >= 10.0 - float(fine.mean()) - 1e-12
+
+
+def test_line_contact_is_off_by_more_than_its_meshes() -> None:
+    """Curves that agree on both meshes: in line contact a part of each value, of the mean and of the peak-to-peak value
+    is left, exactly; where the contact is resolved nothing is."""
+    same = wave(40, 10.0, 3.0)
+    line, resolved = (PitchCurve(LOADED, same, same, 2, in_line_contact=each) for each in (True, False))
+    assert line.bars == pytest.approx(LINE_OFF[LOADED] * same)
+    assert resolved.bars == pytest.approx(0.0, abs=1e-12)
+    assert line.mean_error - resolved.mean_error == pytest.approx(LINE_OFF[LOADED] * 10.0)
+    assert line.peak_to_peak_error - resolved.peak_to_peak_error == pytest.approx(LINE_VARIES[LOADED] * 6.0)
 
 
 def test_harmonics_do_not_depend_on_the_mean() -> None:

@@ -61,6 +61,18 @@ def test_relieved_flanks_have_the_gap_of_a_fine_search() -> None:
     assert gap.gap[inside].max() > 5e-3
 
 
+@pytest.mark.parametrize("relief", [30, 150])
+def test_deep_relief_leaves_a_gap(relief: int) -> None:
+    """Problem: a relief so deep that its end moves the vertex of the gap to the edge of the tip. Exact: flanks with
+    material taken off do not overlap; where nothing is taken off on either side of a line there is no gap."""
+    pair = helical_scene(*(text.replace("=30", f"={relief}") for text in RELIEF)).gear_pair()
+    for angle in (0.0, 0.05, 0.1, 0.2):
+        stations, gap = found(pair, angle)
+        assert gap.gap.min() > -1e-6
+        assert gap.gap[np.abs(stations.roll_distance) < 1.0].max(initial=0.0) < 1e-5
+        assert gap.gap.max() < 0.5
+
+
 def test_least_gap_is_the_unloaded_transmission_error() -> None:
     """Problem: lead crowning and a misalignment, so that the flanks touch at a point. Exact: the least gap of all
     points, over cos β_b, is the unloaded transmission error; 0.1 µm on stations every 0.5 mm."""

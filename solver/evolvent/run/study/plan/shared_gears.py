@@ -1,7 +1,7 @@
 """Scenes of a study that share condensed gears.
 
 The compliance of gears depends neither on friction nor on misalignment, and on the torque by their meshes only, which
-may serve a range of torques.
+may serve a range of torques. In line contact it depends neither on the torque nor on flank modifications.
 """
 
 from __future__ import annotations
@@ -79,7 +79,9 @@ def _without_torque(scene: Scene) -> str:
 
 
 def _serving(scene: Scene, torques: tuple[float, float]) -> Scene:
-    """The scene on meshes for a range of torques [N·m], unless it gives such a range itself."""
-    if torques == (scene.load.torque_Nm, scene.load.torque_Nm) or scene.load.mesh_torques_Nm is not None:
+    """The scene on meshes for a range of torques [N·m], unless it gives such a range itself or is in line contact, on
+    meshes that do not depend on the torque."""
+    own = torques == (scene.load.torque_Nm, scene.load.torque_Nm)
+    if own or scene.load.mesh_torques_Nm is not None or scene.mesh.level == "line":
         return scene
     return scene.changed("load", mesh_torques_Nm=torques)

@@ -143,15 +143,15 @@ class _Both:
         cuts = [slices(result, facets_of(self.model), materials) for result in self.resolved]
         loads, ends, pressures = self._slices(cuts)
         factors = self._face_load(cuts)
-        edges = self.mesh.on_edges
-        assert edges is not None
+        assert self.mesh.line is not None
         return LineRow(
             self.case.name, self.case.problem.mesh.level, 1e-3 * torque, len(error), 1e3 * deflection,
             100.0 * float(np.abs(off).max()) / deflection, 1e3 * float(np.ptp(error)),
-            1e3 * float(np.ptp(self.mesh.errors[:, self.number]) - np.ptp(error)), 100.0 * self._tooth_forces(),
+            1e3 * float(np.ptp(error + off) - np.ptp(error)), 100.0 * self._tooth_forces(),
             100.0 * loads, 100.0 * ends, factors[0], 100.0 * (factors[1] / factors[0] - 1.0),
             100.0 * float(np.abs(self.mesh.stiffness[:, self.number] / stiffness - 1.0).max()), 100.0 * pressures,
-            100.0 * float(edges[:, self.number].max()), int((1e3 * np.abs(off) <= bars).sum()), *seconds,
+            100.0 * float(self.mesh.line.on_edges[:, self.number].max()),
+            int((1e3 * np.abs(off) <= bars).sum()), *seconds,
         )
 
     def _tooth_forces(self) -> float:

@@ -49,7 +49,7 @@ ALL = (
     case("He, linear relief, plane", SPUR, (5.0, 30.0, 100.0), *relieved(20.0, "linear"), *FINE),
     case("He, lead crowning", SPUR, (60.0, 100.0), *relieved(20.0), "pinion.lead_crowning_um=5"),
     case("tutorial, 24/72", ROOT / FIRST, (15.0, 50.0, 90.0), *relieved(40.0)),
-    case("Yang, relieved", HELICAL, (5.0, 30.0, 100.0), *relieved(60.0)),
+    case("Yang, relieved", HELICAL, (10.0, 30.0, 100.0), *relieved(60.0)),
     case("Yang, misaligned 20 µm", HELICAL, (10.0, 30.0), *relieved(60.0), "pair.misalignment_um=20"),
     case("23/81", ROOT / FIRST, (50.0, 100.0), *SLENDER, *relieved(20.0), "load.torque_Nm=100"),
 )
@@ -73,7 +73,7 @@ def random_cases() -> Iterator[Case]:
             found += 1
             kind = "helical" if helical else "spur"
             pair = problem.pair
-            yield Case(f"random {kind} {found}, {pair.pinion.z}/{pair.wheel.z}", problem, (25.0, 100.0), positions=4)
+            yield Case(f"random {kind} {found}, {pair.pinion.z}/{pair.wheel.z}", problem, (50.0, 100.0), positions=4)
 
 
 def _random_problem(seed: int, helical: bool) -> GearProblem:
@@ -81,7 +81,7 @@ def _random_problem(seed: int, helical: bool) -> GearProblem:
     rng = np.random.default_rng((seed, helical))
     module = round(float(rng.uniform(1.0, 6.0)), 2)
     teeth, ratio = int(rng.integers(17, 36)), float(rng.uniform(1.0, 3.5))
-    wheel, width = round(teeth * ratio), round(module * float(rng.uniform(5.0, 8.0)), 2)
+    wheel, width = round(teeth * ratio), round(module * float(rng.uniform(3.0, 5.0)), 2)
     helix = round(float(rng.uniform(8.0, 25.0)), 1) if helical else 0.0
     radius = 0.5 * module * teeth / np.cos(np.radians(helix))
     load = float(rng.uniform(40.0, 120.0)) * module  # per mm of face

@@ -3,27 +3,62 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.line.line_gears import LineGears
+from evolvent.gears.line.line_result import LineResult
 from evolvent_meshes.arrays import Floats
 
 
+@dataclass(frozen=True, eq=False)
+class LineFigures:
+    """Figures that a line contact has beside those of the mesh, at n positions under m torques."""
+
+    on_edges: Floats
+    """(n, m) part of the load that edges of tips bear."""
+    pressure: Floats
+    """(n, m) largest of Hertz' p_0 without edges of tips [MPa]."""
+    layer_load: Floats
+    """(n, m, l) load per face width in the layers of the mesh over that of the whole face."""
+
+    @staticmethod
+    def of(columns: Floats) -> LineFigures:
+        """The figures in the order of `line_figures`, behind those of the mesh (n, m, 2 + l)."""
+        return LineFigures(columns[..., 0], columns[..., 1], columns[..., 2:])
+
+    @property
+    def face_load_factor(self) -> Floats:
+        """K_Hβ (m,) (ISO 6336-1:2006, 7.2.2) under each torque: the largest load of a layer in the mean over the
+        positions; 1 in the plane."""
+        return np.asarray(self.layer_load.mean(axis=0).max(axis=-1))
+
+    @property
+    def largest_pressure_MPa(self) -> Floats:
+        """Largest p_0 (m,) over the pitch under each torque [MPa]."""
+        return np.asarray(self.pressure.max(axis=0))
+
+    def lightest(self, count: int) -> LineFigures:
+        """Figures under the lightest torques alone."""
+        return LineFigures(self.on_edges[:, :count], self.pressure[:, :count], self.layer_load[:, :count])
+
+
 def line_figures(model: GearModel, torques: Sequence[float], angles: Floats) -> Iterator[Floats]:
-    """Figures (m, 5) of positions one after the other, under each torque [N·mm], see `figures_of`.
+    """Figures (m, 6 + l) of positions one after the other, under each torque [N·mm]: those of `figures_of`, then of
+    `LineFigures`.
 
     The loads act along the normals of the helicoids, so that the torques of both gears have the ratio of the base radii
     exactly, and no position stores power. Raises NotConverged, TooWide.
     """
-    gears, pinion = LineGears.of(model), model.pair.pinion.base_radius
+    gears, radius, width = LineGears.of(model), model.base_radius, model.width_factor
     for angle in angles:
         position = gears.position(float(angle))
         rows = []
         for torque in torques:
-            found = position.under(torque / model.base_radius / model.width_factor)
-            stiffness = found.stiffness * model.width_factor
-            given = torque / model.width_factor * pinion / model.base_radius
-            rows.append((found.approach, stiffness, given, 0.0, position.on_edges(found.load)))
+            found = LineResult.of(position, torque / radius / width)
+            load, given = found.equilibrium.load, torque / width * model.pair.pinion.base_radius / radius
+            mesh = found.transmission_error, found.equilibrium.stiffness * width, given, 0.0
+            rows.append([*mesh, position.on_edges(load), found.largest_pressure, *found.layer_load(gears.layers)])
         yield np.array(rows)

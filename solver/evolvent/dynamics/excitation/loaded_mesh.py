@@ -14,7 +14,7 @@ from types import MappingProxyType
 import numpy as np
 from mpi4py import MPI
 
-from evolvent.dynamics.excitation.line_mesh import line_figures
+from evolvent.dynamics.excitation.line_mesh import LineFigures, line_figures
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
@@ -32,10 +32,10 @@ from evolvent_meshes.errors import ResultError
 Positions = tuple[Mapping[float, SharedPosition], ...]
 """Positions of a rank, each by its torque [N·mm]."""
 Figures = Mapping[int, Floats]
-"""Number of a position -> (m, 5) under each torque: `figures_of`."""
-COLUMNS = 5
-"""Number of figures of a position under a torque: transmission error, stiffness, pinion torque, stored power, part of
-the load on edges of tips in line contact; NaN where the contact is resolved."""
+"""Number of a position -> (m, 4) under each torque: `figures_of`; in line contact (m, 6 + l): `line_figures`."""
+COLUMNS = 4
+"""Number of figures of a position under a torque where the contact is resolved: transmission error, stiffness, pinion
+torque, stored power."""
 
 
 class EdgeContact(ResultError):
@@ -58,15 +58,15 @@ class LoadedMesh:
     """(n, m) tangent stiffness dF/ds [N/mm], of the whole face."""
     deflected: bool = False
     """Whether contact was searched again on deflected flanks."""
-    on_edges: Floats | None = None
-    """(n, m) part of the load that edges of tips bear in line contact; None where the contact is resolved."""
+    line: LineFigures | None = None
+    """Further figures of a line contact; None where the contact is resolved."""
 
     def lightest(self, count: int) -> LoadedMesh:
         """The mesh under its lightest torques alone."""
-        edges = None if self.on_edges is None else self.on_edges[:, :count]
+        line = None if self.line is None else self.line.lightest(count)
         return replace(
             self, torques=self.torques[:count], errors=self.errors[:, :count], stiffness=self.stiffness[:, :count],
-            on_edges=edges,
+            line=line,
         )
 
     @property
@@ -111,7 +111,7 @@ def solved_figures(
 
 
 def _resolved_figures(models: Sequence[GearModel], angles: Floats) -> Iterator[Floats]:
-    """Figures (m, 5) of positions one after the other, under each torque, with the contact resolved."""
+    """Figures (m, 4) of positions one after the other, under each torque, with the contact resolved."""
     for row in searched_positions(models, angles):
         yield np.array([figures_of(*each) for each in zip(models, row)])
 
@@ -119,7 +119,7 @@ def _resolved_figures(models: Sequence[GearModel], angles: Floats) -> Iterator[F
 def certify_torques(found: Figures, torques: Sequence[float]) -> None:
     """Raises PitchImbalance where the pitch is out of balance under one of the torques (m,) [N·mm]. found: of equal
     steps of a whole pitch."""
-    _, _, given, stored, _ = np.moveaxis(np.array(list(found.values())), -1, 0)
+    _, _, given, stored = np.moveaxis(np.array(list(found.values()))[..., :COLUMNS], -1, 0)
     for torque, imbalance in zip(torques, energy_imbalance(stored, given)):
         require_balance(float(imbalance), f"under {1e-3 * torque:.4g} N·m")
 
@@ -130,14 +130,16 @@ def in_line_contact(mesh: LoadedMesh, least: float) -> tuple[LoadedMesh, str]:
 
     least: torque [N·mm] that has to be among them. Raises EdgeContact where it is not.
     """
-    bearing = mesh.on_edges > MOST_ON_EDGES if mesh.on_edges is not None else np.zeros((1, len(mesh.torques)))
-    first = int(np.append(bearing.any(axis=0), True).argmax())
-    if mesh.on_edges is None or first == len(mesh.torques):
+    if mesh.line is None:
         return mesh, ""
-    torque = float(mesh.torques[first])
+    bearing = mesh.line.on_edges > MOST_ON_EDGES
+    first = int(np.append(bearing.any(axis=0), True).argmax())
+    if first == len(mesh.torques):
+        return mesh, ""
+    torque, most = float(mesh.torques[first]), 100 * float(mesh.line.on_edges[:, first].max())
     why = (
-        f"under {1e-3 * torque:.4g} N·m they bear up to {100 * float(mesh.on_edges[:, first].max()):.2g} % of the "
-        f"load, at {int(bearing[:, first].sum())} of {len(mesh.angles)} positions"
+        f"under {1e-3 * torque:.4g} N·m they bear up to {most:.2g} % of the load, at {int(bearing[:, first].sum())} of "
+        f"{len(mesh.angles)} positions"
     )
     remedy = 'relieve the tips (tip_relief_um), or resolve the contact (mesh.level = "quick")'
     if torque <= least:
@@ -155,8 +157,8 @@ def mesh_of(
     """Mesh from the figures of all positions. torques: (m,) [N·mm]; radius: base radius of their gear [mm]."""
     figures = np.array([found[i] for i in range(len(angles))])
     ascending = np.array(torques, dtype=float)
-    on_edges = None if np.isnan(figures[..., 4]).any() else figures[..., 4]
-    return LoadedMesh(angles, ascending, radius, figures[..., 0], figures[..., 1], deflected, on_edges)
+    line = LineFigures.of(figures[..., COLUMNS:]) if figures.shape[-1] > COLUMNS else None
+    return LoadedMesh(angles, ascending, radius, figures[..., 0], figures[..., 1], deflected, line)
 
 
 def loaded_mesh_again(
@@ -186,19 +188,16 @@ def under_torques(model: GearModel, torques: Sequence[float]) -> list[GearModel]
     return [replace(model, load=load) for load in loads]
 
 
-def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float, float, float, float]:
-    """Transmission error [mm] and stiffness [N/mm] of a position, its torque on the pinion, the power that its teeth
-    store (`PositionResult.stored_power`), and NaN for the part of the load on edges in line contact.
-
-    Raises NotConverged and SearchError on deflected flanks; BalanceError.
-    """
+def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float, float, float]:
+    """Transmission error [mm] and stiffness [N/mm] of a position, its torque on the pinion and the power that its teeth
+    store (`PositionResult.stored_power`). Raises NotConverged and SearchError on deflected flanks; BalanceError."""
     contact, smooth, stiffness = position.contact, position.smooth, position.stiffness
     if model.deflected:
         found = deflected_equilibrium(model, contact, smooth, 0.0, None, 0.0)
         contact, smooth, stiffness = found.contact, found.equilibrium, found.stiffness
     result = position_result(model, contact, smooth, 0.0, stiffness, 0)
     certify([result])
-    return result.transmission_error, stiffness * model.width_factor, result.torques[0], result.stored_power, np.nan
+    return result.transmission_error, stiffness * model.width_factor, result.torques[0], result.stored_power
 
 
 def equilibrium(model: GearModel, position: SharedPosition) -> PairRotation:

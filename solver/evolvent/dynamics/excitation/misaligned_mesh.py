@@ -18,7 +18,7 @@ from evolvent_meshes.arrays import Floats
 
 
 def misaligned_figures(models: Sequence[GearModel], angles: Floats) -> Iterator[Floats]:
-    """(m, 5) figures of each model (`figures_of`), position by position.
+    """(m, 4) figures of each model (`figures_of`), position by position.
 
     models: m, of the same gears under the same torque, at ascending misalignments.
     angles: of the pinion [rad].

@@ -179,7 +179,7 @@ def pitch_curves(excitation: MeshExcitation, companion: CoarseExcitation) -> Ite
     whole = {name: values(excitation) for name, values in QUANTITIES.items()}
     known = {name: None if coarse is None else values(coarse) for name, values in QUANTITIES.items()}
     count = len(excitation.loaded.forces)
-    line = excitation.loaded.on_edges is not None
+    line = excitation.loaded.line is not None
     for j, elements in enumerate(companion.elements or (math.inf,) * count):
         others = {name: None if values is None else values[:, j] for name, values in known.items()}
         yield {

@@ -14,6 +14,8 @@ from evolvent.gears.problem.iso_stiffness import stiffnesses
 from evolvent.results.tables.table import Record
 from evolvent_meshes.gears.pair import GearPair
 
+PRESSURE_OFF = 2e-2
+"""Part by which p_0 of a line contact is off beside the error of its meshes (docs/line_contact.md)."""
 LOADS = 400
 """Loads among which the least peak-to-peak value is sought before it is refined."""
 
@@ -56,6 +58,16 @@ class ExcitationFacts:
     that the standard's formula does not cover."""
     iso_mesh_stiffness_N_per_mm_um: float | None
     """Mesh stiffness c_γα of ISO 6336-1:2006, clause 9, Method B, under the heaviest torque; null likewise."""
+    face_load_factor: float | None
+    """Face load factor K_Hβ (ISO 6336-1:2006, 7.2.2) under the heaviest torque, on the layers of the mesh in the mean
+    over the pitch; null where the contact is resolved (`evolvent run` has it), 1 in the plane."""
+    face_load_factor_error: float | None
+    """Estimated error of the face load factor; null without error bars."""
+    largest_pressure_MPa: float | None
+    """Largest of Hertz' p_0 over the pitch under the heaviest torque, without friction and without edges of tips, with
+    the radii of curvature of the modified flanks; null where the contact is resolved."""
+    largest_pressure_MPa_error: float | None
+    """Estimated error of the largest pressure; null without error bars."""
     warnings: tuple[str, ...]
     """Sentences that a reader of the excitation has to know, as the command prints them."""
 
@@ -80,8 +92,26 @@ def excitation_facts(
         design_peak_to_peak_um=size, design_peak_to_peak_um_error=error, design_from_Nm=lightest, design_to_Nm=heaviest,
         mean_tangent_stiffness_N_per_mm_um=per_width * float(np.mean(excitation.loaded.stiffness[:, -1])),
         mean_secant_stiffness_N_per_mm_um=per_width * float(np.mean(excitation.secant[:, -1])),
-        iso_single_stiffness_N_per_mm_um=single, iso_mesh_stiffness_N_per_mm_um=mesh, warnings=tuple(warnings),
+        iso_single_stiffness_N_per_mm_um=single, iso_mesh_stiffness_N_per_mm_um=mesh,
+        **_of_line_contact(excitation, companion), warnings=tuple(warnings),
     )
+
+
+def _of_line_contact(excitation: MeshExcitation, companion: CoarseExcitation) -> dict[str, float | None]:
+    """Face load factor and largest pressure under the heaviest torque, with their errors."""
+    own, coarse = (
+        None if each is None else each.loaded.line for each in (excitation, companion.excitation)
+    )
+    names = "face_load_factor", "largest_pressure_MPa"
+    if own is None:
+        return {name: None for each in names for name in (each, f"{each}_error")}
+    found: dict[str, float | None] = {}
+    for name, off in zip(names, (0.0, PRESSURE_OFF)):
+        value, other = (None if each is None else getattr(each, name)[-1] for each in (own, coarse))
+        assert value is not None
+        found[name] = float(value)
+        found[f"{name}_error"] = None if other is None else abs(float(value - other)) + off * float(value)
+    return found
 
 
 def _design(

@@ -53,11 +53,4 @@ class LinePitch:
     def face_load_factor(self) -> float:
         """K_Hβ (ISO 6336-1:2006, 7.2.2): largest force per face width in the layers of the mesh over that of the whole
         face, in the mean over the pitch; 1 in the plane."""
-        layers = self.gears.layers
-        if layers is None:
-            return 1.0
-        force = sum(
-            np.diff(result.force_below(tooth, layers)) for result in self.results for tooth in result.teeth
-        )
-        load = np.asarray(force) / np.diff(layers)
-        return float(load.max() * (layers[-1] - layers[0]) / np.sum(force))
+        return float(np.mean([result.layer_load(self.gears.layers) for result in self.results], axis=0).max())

@@ -74,6 +74,14 @@ class LineResult:
         own = stations.tooth == tooth
         return np.interp(heights, stations.z[own], self.equilibrium.load[own], left=0.0, right=0.0)
 
+    def layer_load(self, layers: Floats | None) -> Floats:
+        """Load per face width (l,) of all tooth pairs in layers over that of the whole face. layers: their ends
+        (l + 1,) [mm]; None in the plane, which has one."""
+        if layers is None:
+            return np.ones(1)
+        force = np.sum([np.diff(self.force_below(tooth, layers)) for tooth in self.teeth], axis=0)
+        return np.asarray(force / np.sum(force) * (layers[-1] - layers[0]) / np.diff(layers))
+
     @property
     def transmission_error(self) -> float:
         """Transmission error r_b1 φ_1 − r_b2 φ_2 [mm]."""

@@ -45,7 +45,7 @@ class KeptPositions:
         return replace(self, name=self.name.replace(*DEFLECTED))
 
     def read(self) -> dict[int, Floats]:
-        """Number of a position -> (m, 5) figures under each torque (`figures_of`); none where there is no file. Raises
+        """Number of a position -> figures under each torque (`Figures`); none where there is no file. Raises
         ArchiveError where it is that of other gears, torques or positions."""
         return self.store.read(self.name, self._figures) or {}
 
@@ -53,7 +53,7 @@ class KeptPositions:
         """Figures of the positions in archived arrays, by the number of the position. Raises ArchiveError where the
         arrays hold others."""
         numbers, figures = arrays.get("numbers", np.zeros(0)), arrays.get("figures", np.zeros(0))
-        fits = figures.shape == (*numbers.shape, *figures.shape[1:2], COLUMNS)
+        fits = figures.ndim == 3 and numbers.shape == figures.shape[:1] and figures.shape[-1] >= COLUMNS
         if numbers.dtype.kind != "i" or figures.dtype.kind != "f" or not fits:
             raise ArchiveError(
                 f"{self.store.folder.out / self.name}: wanted numbers of positions with their figures, found other "

@@ -49,7 +49,7 @@ def test_relieved_spur_pair_is_as_resolved() -> None:
     assert line.errors == pytest.approx(fine.errors, rel=3e-3)
     assert np.ptp(line.errors, axis=0) == pytest.approx(np.ptp(fine.errors, axis=0), abs=2e-5)
     assert line.stiffness == pytest.approx(fine.stiffness, rel=8e-3)
-    assert line.on_edges is not None and line.on_edges.max() == 0.0
+    assert line.line is not None and line.line.on_edges.max() == 0.0
 
 
 def test_torque_needs_no_other_meshes() -> None:

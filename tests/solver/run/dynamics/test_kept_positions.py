@@ -36,14 +36,14 @@ def kept(out: Path) -> KeptPositions:
     return KeptPositions(Store(RunFolder(out), "gears", another), NAMES[""])
 
 
-WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 5)))
+WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 4)))
 
 
 def test_what_was_written_is_read(tmp_path: Path) -> None:
     """Two positions under one torque."""
     RunFolder(tmp_path).write(NAMES[""], WHOLE)
     found = kept(tmp_path).read()
-    assert list(found) == [0, 1] and np.array_equal(found[1], np.ones((1, 5)))
+    assert list(found) == [0, 1] and np.array_equal(found[1], np.ones((1, 4)))
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,7 @@ def test_what_was_written_is_read(tmp_path: Path) -> None:
     [
         b"", b"\0" * 100, b"PK\x03\x04" + b"\0" * 60, WHOLE[:-30], WHOLE[:60] + b"\xff" * 40 + WHOLE[100:],
         single_array(), archive(), archive(numbers=np.arange(2)),
-        archive(numbers=np.arange(3), figures=np.ones((2, 1, 5))),
+        archive(numbers=np.arange(3), figures=np.ones((2, 1, 4))),
         archive(numbers=np.arange(2), figures=np.ones((2, 2))),
         archive(numbers=np.array(["a"]), figures=np.ones((1, 1, 4))),
         archive(numbers=np.arange(1), figures=np.array([[list("abcd")]])),

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 
 from evolvent.dynamics.results.curves import LOADED, SECANT, TANGENT
+from evolvent.dynamics.results.design_load import EXCITATION_FACTS
 from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
 from evolvent.dynamics.results.tables import HARMONICS
 from evolvent.dynamics.results.transient.facts import TRANSIENT_FACTS
@@ -48,6 +49,10 @@ def _of_losses() -> list[Figure]:
     return [Figure(f"largest_{name}", "losses.csv", name, statistic="max", error=f"{name}{ERROR}") for name in names]
 
 
+OF_LINE_CONTACT = "face_load_factor", "largest_pressure_MPa"
+"""Figures of an excitation in line contact alone."""
+
+
 def _of_excitation() -> list[Figure]:
     def of(name: str, quantity: str, column: str) -> Figure:
         where: dict[str, str | int | float] = {"quantity": quantity, "harmonic": 1}
@@ -60,6 +65,7 @@ def _of_excitation() -> list[Figure]:
         of("tangent_stiffness_mean_N_per_um", TANGENT, "mean"),
         of("tangent_stiffness_peak_to_peak_N_per_um", TANGENT, "peak_to_peak"),
         of("secant_stiffness_mean_N_per_um", SECANT, "mean"),
+        *(Figure(name, EXCITATION_FACTS.name, name, error=f"{name}{ERROR}") for name in OF_LINE_CONTACT),
     ]
 
 

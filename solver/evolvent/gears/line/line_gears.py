@@ -40,6 +40,11 @@ MOST_ON_EDGES = 1e-2
 without relief), the transmission error is 0.6 % off."""
 
 
+EDGE_REACH = 2.0
+"""Half-widths of the contact from the edge of a tip within which a load counts as borne by it. Resolved contacts have
+pressure in the last row of cells before the edge there."""
+
+
 class TooWide(ResultError):
     """Error for a contact that is too wide for the meshes of a line contact."""
 
@@ -74,15 +79,14 @@ class LinePosition:
         return found
 
     def on_edges(self, load: Floats) -> float:
-        """Part of the loads per length (m,) [N/mm] at edges of tips, or so near to them that the contact reaches them.
-        """
+        """Part of the loads per length (m,) [N/mm] that bear on edges of tips or near to them."""
         force = self.stations.hats @ load
         return float(force[self.bears_on_edge(load)].sum() / force.sum())
 
     def bears_on_edge(self, load: Floats) -> Bools:
-        """Points (p,) that bear load (m,) [N/mm] on the edge of a tip or within the half-width of the contact."""
+        """Points (p,) that bear on the edge of a tip or near to it under loads per length (m,) [N/mm]."""
         half = self._half_width(load)
-        return np.asarray((half > 0.0) & (self.gap.edge | (half > self.to_tip)))
+        return np.asarray((half > 0.0) & (self.gap.edge | (EDGE_REACH * half > self.to_tip)))
 
     def _half_width(self, load: Floats) -> Floats:
         """Half-width b (p,) of the contact at the points, under loads per length (m,) [N/mm]."""

@@ -82,8 +82,8 @@ def said(docs: Path) -> str:
     worst = max(row.largest_silent_percent for row in measured)
     return (
         f"{len(measured)} random spur pairs without relief (`python -m evidence.benchmarks.accuracy.line_edges`): "
-        f"edges bear more than {100 * MOST_ON_EDGES:g} % of the load at {bearing} of {count} positions where the contact "
-        f"is resolved, line contact flags {flagged}; {silent} that bear are not flagged"
+        f"edges bear more than {100 * MOST_ON_EDGES:g} % of the load at {bearing} of {count} positions where the "
+        f"contact is resolved, line contact flags {flagged}; {silent} that bear are not flagged"
         f"{f', with up to {worst:.2g} % of the load' if silent else ''}."
     )
 

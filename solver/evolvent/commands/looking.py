@@ -55,8 +55,9 @@ def check(
             _require_new(out, ".png", overwrite)
         typer.echo(overview(loaded))
         if contact:
-            from evolvent.check.contact_rows import contact_table
+            from evolvent.check.contact_rows import contact_table, line_scene
 
+            require_room(line_scene(loaded), "check", False)
             typer.echo(f"\n{contact_table(loaded)}")
         if out is not None:
             from evolvent.results.drawing.style import png_of

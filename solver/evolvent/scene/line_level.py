@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from evolvent.scene.schema.bodies import MeshSection
+from evolvent.scene.schema.bodies import Level, MeshSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
 from evolvent.scene.schema.output import ExactSection, SkipName
 
-LINE = "line"
+LINE: Level = "line"
 """Mesh level of line contact."""
 RESOLVED_PARTS: tuple[SkipName, ...] = ("friction-terms", "one-sector", "window", "deflected-flanks", "two-level")
 """Parts of a resolved contact, which a line contact has not."""

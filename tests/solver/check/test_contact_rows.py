@@ -23,16 +23,16 @@ def figure(text: str, name: str) -> float:
 
 
 def test_figures_are_those_of_an_excitation() -> None:
-    """Exact: transmission error and stiffness of `evolvent excitation --level line` at the same positions; K_Hβ is 1 in
-    the plane; the scene's own level is without effect."""
-    text = contact_table(spur_scene(*RELIEVED, "sweep.positions=8"))
-    angles = 2.0 * np.pi / 50.0 * np.arange(8) / 8
+    """Exact: transmission error and stiffness of `evolvent excitation --level line` at the same 60 positions; no K_Hβ in
+    the plane; the scene's own level and order are without effect."""
+    text = contact_table(spur_scene(*RELIEVED, "mesh.order=1", 'exact.parts=["window"]'))
+    angles = 2.0 * np.pi / 50.0 * np.arange(60) / 60
     mesh = loaded_mesh(model_of(spur_scene(*RELIEVED, "mesh.level=line")), [170e3], angles)
-    assert figure(text, "transmission error, mean") == pytest.approx(1e3 * mesh.errors.mean(), abs=6e-4)
-    assert figure(text, "transmission error, peak to peak") == pytest.approx(1e3 * np.ptp(mesh.errors), abs=6e-4)
+    assert figure(text, "transmission error, mean") == pytest.approx(1e3 * mesh.errors.mean(), abs=6e-3)
+    assert figure(text, "transmission error, peak to peak") == pytest.approx(1e3 * np.ptp(mesh.errors), abs=6e-3)
     assert figure(text, "tangent mesh stiffness, mean") == pytest.approx(1e-3 * mesh.stiffness.mean(), abs=0.06)
-    assert figure(text, "face load factor") == 1.0
-    assert 500.0 < figure(text, "largest pressure by Hertz, without tips") < 2000.0
+    assert "face load factor" not in text
+    assert 500.0 < figure(text, "Hertzian pressure away from edges, kinks") < 2000.0
 
 
 def test_edges_leave_no_figures() -> None:

@@ -12,6 +12,9 @@ from evolvent.gears.line.line_gears import LineGears
 from evolvent.gears.line.line_result import LineResult
 from evolvent_meshes.arrays import Floats
 
+FACE_LOAD_OFF = 1e-2
+"""Part by which K_Hβ of a line contact is off beside the error of its meshes (docs/line_contact.md)."""
+
 
 @dataclass(frozen=True, eq=False)
 class LineFigures:
@@ -20,7 +23,7 @@ class LineFigures:
     on_edges: Floats
     """(n, m) part of the load that edges of tips bear."""
     pressure: Floats
-    """(n, m) largest of Hertz' p_0 without edges of tips [MPa]."""
+    """(n, m) largest of Hertz' p_0 away from edges of tips and from starts of linear reliefs [MPa]."""
     layer_load: Floats
     """(n, m, l) load per face width in the layers of the mesh over that of the whole face."""
 
@@ -34,6 +37,21 @@ class LineFigures:
         """K_Hβ (m,) (ISO 6336-1:2006, 7.2.2) under each torque: the largest load of a layer in the mean over the
         positions; 1 in the plane."""
         return np.asarray(self.layer_load.mean(axis=0).max(axis=-1))
+
+    @property
+    def is_plane(self) -> bool:
+        """Whether the gears are solved in the plane, where K_Hβ is no result."""
+        return self.layer_load.shape[-1] == 1
+
+    def face_load_error(self, coarse: LineFigures) -> Floats:
+        """Error of K_Hβ (m,) by the mesh: the difference to a companion's, on its layers, which are fewer, and
+        `FACE_LOAD_OFF` of the factor."""
+        own, other = (each.layer_load.mean(axis=0) for each in (self, coarse))
+        count, fewer = own.shape[-1], other.shape[-1]
+        below = np.concatenate([np.zeros((len(own), 1)), np.cumsum(own, axis=-1) / count], axis=-1)
+        ends = np.linspace(0.0, 1.0, fewer + 1)
+        on_layers = np.diff([np.interp(ends, np.linspace(0.0, 1.0, count + 1), each) for each in below]) * fewer
+        return np.asarray(np.abs(on_layers.max(axis=-1) - other.max(axis=-1)) + FACE_LOAD_OFF * self.face_load_factor)
 
     @property
     def largest_pressure_MPa(self) -> Floats:
@@ -60,5 +78,5 @@ def line_figures(model: GearModel, torques: Sequence[float], angles: Floats) -> 
             found = LineResult.of(position, torque / radius / width)
             load, given = found.equilibrium.load, torque / width * model.pair.pinion.base_radius / radius
             mesh = found.transmission_error, found.equilibrium.stiffness * width, given, 0.0
-            rows.append([*mesh, position.on_edges(load), found.largest_pressure, *found.layer_load(gears.layers)])
+            rows.append([*mesh, position.on_edges(load), found.largest_pressure(model.pair), *found.layer_load(gears.layers)])
         yield np.array(rows)

@@ -36,6 +36,8 @@ Figures = Mapping[int, Floats]
 COLUMNS = 4
 """Number of figures of a position under a torque where the contact is resolved: transmission error, stiffness, pinion
 torque, stored power."""
+LINE_COLUMNS = COLUMNS + 3
+"""Least number of them in line contact: the part of the load on edges, p_0 and the load of a layer besides."""
 
 
 class EdgeContact(ResultError):
@@ -157,7 +159,7 @@ def mesh_of(
     """Mesh from the figures of all positions. torques: (m,) [N·mm]; radius: base radius of their gear [mm]."""
     figures = np.array([found[i] for i in range(len(angles))])
     ascending = np.array(torques, dtype=float)
-    line = LineFigures.of(figures[..., COLUMNS:]) if figures.shape[-1] > COLUMNS else None
+    line = LineFigures.of(figures[..., COLUMNS:]) if figures.shape[-1] >= LINE_COLUMNS else None
     return LoadedMesh(angles, ascending, radius, figures[..., 0], figures[..., 1], deflected, line)
 
 

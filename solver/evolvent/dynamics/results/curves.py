@@ -43,8 +43,10 @@ BENDS = {UNLOADED: KINK, LOADED: KINK, TANGENT: JUMP, SECANT: KINK}
 pair comes into contact, the others have kinks there."""
 LINE_OFF = {LOADED: 2e-3, TANGENT: 5e-3, SECANT: 2e-3}
 LINE_VARIES = {LOADED: 6e-3, TANGENT: 2e-2, SECANT: 6e-3}
-"""Parts by which values of a line contact are off beside the error of its meshes, and by which peak-to-peak values and
-amplitudes are: nine in ten deviations from resolved contacts are smaller (docs/line_contact.md)."""
+LINE_LEAST = {LOADED: 1e-3, TANGENT: 2e-3, SECANT: 1e-3}
+"""Parts by which values of a line contact are off beside the error of its meshes; by which peak-to-peak values and
+amplitudes are; and the least error of these, over the mean value. Nine in ten deviations from resolved contacts are
+smaller (docs/line_contact.md)."""
 NARROW = 1.0
 """Elements across the contact width below which the errors of the mesh are larger than by its rate. The contact's own
 deflection goes with the logarithm of its width, and that of a contact narrower than an element with the element's
@@ -107,7 +109,9 @@ class PitchCurve:
         """Error by the mesh of a figure that does not depend on the mean of the curve; NaN where it is not known."""
         if self.coarse is None:
             return float("nan")
-        return self._compared(SHARING).of_varying(figure) + self._model(LINE_VARIES) * abs(figure(self.values))
+        least = self._model(LINE_LEAST) * float(np.mean(np.abs(self.values)))
+        off = max(least, self._model(LINE_VARIES) * abs(figure(self.values)))
+        return self._compared(SHARING).of_varying(figure) + off
 
     def _model(self, off: Mapping[str, float]) -> float:
         """Part by which a line contact is off. off: by the quantity."""

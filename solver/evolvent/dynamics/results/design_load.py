@@ -59,13 +59,15 @@ class ExcitationFacts:
     iso_mesh_stiffness_N_per_mm_um: float | None
     """Mesh stiffness c_γα of ISO 6336-1:2006, clause 9, Method B, under the heaviest torque; null likewise."""
     face_load_factor: float | None
-    """Face load factor K_Hβ (ISO 6336-1:2006, 7.2.2) under the heaviest torque, on the layers of the mesh in the mean
-    over the pitch; null where the contact is resolved (`evolvent run` has it), 1 in the plane."""
+    """Face load factor K_Hβ (ISO 6336-1:2006, 7.2.2) under the heaviest torque in torques_Nm: on the layers of the mesh
+    in the mean over the pitch, without shafts and housing but for pair.misalignment_um; null in the plane, and where the
+    contact is resolved (`evolvent run` has it)."""
     face_load_factor_error: float | None
     """Estimated error of the face load factor; null without error bars."""
     largest_pressure_MPa: float | None
-    """Largest of Hertz' p_0 over the pitch under the heaviest torque, without friction and without edges of tips, with
-    the radii of curvature of the modified flanks; null where the contact is resolved."""
+    """Largest of Hertz' p_0 at the positions under the heaviest torque in torques_Nm, without friction, away from edges
+    of tips and from starts of linear reliefs, with the radii of curvature of the modified flanks; null where the contact
+    is resolved."""
     largest_pressure_MPa_error: float | None
     """Estimated error of the largest pressure; null without error bars."""
     warnings: tuple[str, ...]
@@ -99,18 +101,21 @@ def excitation_facts(
 
 def _of_line_contact(excitation: MeshExcitation, companion: CoarseExcitation) -> dict[str, float | None]:
     """Face load factor and largest pressure under the heaviest torque, with their errors."""
-    own, coarse = (
-        None if each is None else each.loaded.line for each in (excitation, companion.excitation)
-    )
-    names = "face_load_factor", "largest_pressure_MPa"
+    own = excitation.loaded.line
+    coarse = None if companion.excitation is None else companion.excitation.loaded.line
+    found: dict[str, float | None] = {
+        f"{name}{end}": None for name in ("face_load_factor", "largest_pressure_MPa") for end in ("", "_error")
+    }
     if own is None:
-        return {name: None for each in names for name in (each, f"{each}_error")}
-    found: dict[str, float | None] = {}
-    for name, off in zip(names, (0.0, PRESSURE_OFF)):
-        value, other = (None if each is None else getattr(each, name)[-1] for each in (own, coarse))
-        assert value is not None
-        found[name] = float(value)
-        found[f"{name}_error"] = None if other is None else abs(float(value - other)) + off * float(value)
+        return found
+    found["largest_pressure_MPa"] = pressure = float(own.largest_pressure_MPa[-1])
+    if not own.is_plane:
+        found["face_load_factor"] = float(own.face_load_factor[-1])
+    if coarse is not None:
+        mesh = abs(pressure - float(coarse.largest_pressure_MPa[-1]))
+        found["largest_pressure_MPa_error"] = mesh + PRESSURE_OFF * pressure
+        if not own.is_plane:
+            found["face_load_factor_error"] = float(own.face_load_error(coarse)[-1])
     return found
 
 

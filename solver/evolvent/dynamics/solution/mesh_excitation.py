@@ -118,7 +118,7 @@ def mesh_excitation(
     flanks: charts of pinion and wheel, those of the problem that was condensed.
 
     Raises InputError, NotConverged, SearchError, BalanceError, and NoForceSurface where deflections do not grow with
-    the torque.
+    the torque; in line contact EdgeContact where edges of tips bear under one of the torques, and TooWide.
     """
     check_condensed(gears)
     _check(gears, torques, positions, flanks)

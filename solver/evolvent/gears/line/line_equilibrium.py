@@ -90,7 +90,7 @@ def line_equilibrium(system: LineSystem, force: float) -> LineEquilibrium:
         change, q = float(np.abs(new - q).max()), np.maximum(new, 0.0)
         now = np.where(active, new > 0.0, residual < 0.0)
         if not now.any():
-            break
+            raise NotConverged("line contact: wanted stations that bear, found none left after a step")
         if (now == active).all() and change <= CLOSE * float(q.max()):
             unit = np.linalg.solve(matrix, np.append(np.zeros(len(a)), 1.0))
             return LineEquilibrium(q, δ, 1.0 / float(unit[-1]), step)

@@ -1,7 +1,9 @@
 """The least gap of two exact flanks across their contact line, its place and the relative curvature there.
 
 Across the line the gap is nearly a parabola, whose vertex the modifications move: a relief of 60 µm by half a
-millimetre. Where the vertex lies beyond the tip's edge of one of the gears, that edge is the nearest point.
+millimetre. Where the vertex lies beyond the tip's edge of one of the gears, that edge is the nearest point. At the kink
+where a linear relief starts the gap is a parabola over the width of the contact only: it is fitted there again for
+each load.
 """
 
 from __future__ import annotations
@@ -17,7 +19,6 @@ from evolvent.gears.line.stations import Stations
 from evolvent.gears.unloaded_error import Facing, RigidFlanks
 from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.flank import Flank
-from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
@@ -44,7 +45,7 @@ class LineGap:
     radius: Floats
     """(p,) relative radius of curvature there [mm]."""
     edge: Bools
-    """(p,) whether the edge of a tip is nearest."""
+    """(p,) whether the end of a flank is nearest: the edge of a tip, or of the mate's where the root side ends."""
 
 
 def nominal_arcs(pair: GearPair, member: Member, roll_distance: Floats) -> Floats:
@@ -54,52 +55,70 @@ def nominal_arcs(pair: GearPair, member: Member, roll_distance: Floats) -> Float
     return np.asarray(np.sign(roll) * roll**2 / (2.0 * pair.gears[member].base_radius))
 
 
-def line_gap(flanks: RigidFlanks, stations: Stations, free: Member) -> LineGap:
-    """Gap at the points of a position's lines, both gears at their nominal rotations. free: gear that turns under
-    load."""
-    pair, mate, ξ = flanks.pair, free.mate, stations.roll_distance
-    inside = np.clip(ξ, *pair.path_of_contact)
-    radius, arcs = pair.relative_curvature_radius(inside), {m: nominal_arcs(pair, m, ξ) for m in Member}
-    low, high = _limits(pair, arcs, mate)
-    gaps = gap_across(flanks, stations, free, arcs[mate])
-    place = np.clip(np.zeros_like(radius), low, high)
-    for step in STEPS:
-        room = np.minimum(arcs[mate] + place, arcs[free] - place)
-        h = np.clip(0.5 * (high - low), SMALLEST * radius, np.minimum(step * radius, WITHIN * room))
-        middle = np.where(high - low > 2.0 * h, np.clip(place, low + h, high - h), 0.5 * (low + high))
-        before, there, after = gaps(middle[:, None] + h[:, None] * np.array([-1.0, 0.0, 1.0])).T
+@dataclass(frozen=True, eq=False)
+class GapProfile:
+    """The gap across the contact lines at points (p,), both gears at their nominal rotations. Distances are from the
+    line of flanks without modifications [mm of profile arc], positive towards the pinion's tip."""
+
+    across: Callable[[Floats], Floats]
+    """Function of distances (p, k): gap (p, k) along the normal [mm]."""
+    low: Floats
+    """(p,) least distance at which both flanks have points."""
+    high: Floats
+    """(p,) largest distance at which both flanks have points."""
+    room: Floats
+    """(p, 2) distance of the line from the base circles of pinion and wheel [mm of profile arc]."""
+    radius: Floats
+    """(p,) relative radius of curvature of flanks without modifications [mm]."""
+
+    @staticmethod
+    def of(flanks: RigidFlanks, stations: Stations, free: Member) -> GapProfile:
+        """The gap at the points of a position's lines. free: gear that turns under load."""
+        pair, ξ = flanks.pair, stations.roll_distance
+        pinion, wheel = (nominal_arcs(pair, member, ξ) for member in Member)
+        ends = [np.square(Flank(gear).roll_lengths) / (2.0 * gear.base_radius) for gear in pair.gears]
+        low = np.maximum(ends[0][0] - pinion, wheel - ends[1][1])
+        high = np.maximum(low, np.minimum(ends[0][1] - pinion, wheel - ends[1][0]))
+        radius = pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact))
+        across = gap_across(flanks, stations, free)
+        return GapProfile(across, low, high, np.column_stack([pinion, wheel]), radius)
+
+    def least(self) -> LineGap:
+        """The least gap, by fits each about the vertex of the one before."""
+        place = np.clip(np.zeros_like(self.radius), self.low, self.high)
+        for step in STEPS:
+            found = self.fitted(place, step * self.radius)
+            place = found.shift
+        return found
+
+    def fitted(self, place: Floats, reach: Floats) -> LineGap:
+        """The least gap by a parabola through three points about a distance (p,), `reach` (p,) [mm] apart, as far as
+        both flanks have them."""
+        room = WITHIN * np.minimum(self.room[:, 0] + place, self.room[:, 1] - place)
+        h = np.clip(0.5 * (self.high - self.low), SMALLEST * self.radius, np.minimum(reach, room))
+        inner = self.high - self.low > 2.0 * h
+        middle = np.where(inner, np.clip(place, self.low + h, self.high - h), 0.5 * (self.low + self.high))
+        before, there, after = self.across(middle[:, None] + h[:, None] * np.array([-1.0, 0.0, 1.0])).T
         slope, curvature = (after - before) / (2.0 * h), (after - 2.0 * there + before) / h**2
-        bent = np.maximum(curvature, STRAIGHTEST / radius)
+        bent = np.maximum(curvature, STRAIGHTEST / self.radius)
         vertex = middle + np.clip(-slope / bent, -FARTHEST * h, FARTHEST * h)
-        place = np.clip(vertex, low, high)
-        move = place - middle
+        shift = np.clip(vertex, self.low, self.high)
+        move, edge = shift - middle, (vertex <= self.low) | (vertex >= self.high)
         least = there + slope * move + 0.5 * curvature * move**2
-    edge = (vertex <= low) | (vertex >= high)
-    return LineGap(least, mate.sign * place, np.where(edge, radius, 1.0 / bent), edge)
+        return LineGap(least, shift, np.where(edge, self.radius, 1.0 / bent), edge)
 
 
-def _limits(pair: GearPair, arcs: dict[Member, Floats], mate: Member) -> tuple[Floats, Floats]:
-    """Distances (p,) from the nominal line, towards the tip of `mate`, between which both flanks have points [mm]."""
-    own, other = (np.square(Flank(gear).roll_lengths) / (2.0 * gear.base_radius) for gear in _own_first(pair, mate))
-    low = np.maximum(own[0] - arcs[mate], arcs[mate.mate] - other[1])
-    high = np.minimum(own[1] - arcs[mate], arcs[mate.mate] - other[0])
-    return low, np.maximum(low, high)
-
-
-def _own_first(pair: GearPair, member: Member) -> tuple[GearParameters, GearParameters]:
-    """A gear and its mate."""
-    return pair.gears[member], pair.gears[member.mate]
-
-
-def gap_across(flanks: RigidFlanks, stations: Stations, free: Member, arc: Floats) -> Callable[[Floats], Floats]:
-    """Function of distances (p, k) from the nominal line: gap (p, k) along the normal [mm]."""
+def gap_across(flanks: RigidFlanks, stations: Stations, free: Member) -> Callable[[Floats], Floats]:
+    """Function of distances (p, k) from the nominal line, towards the pinion's tip: gap (p, k) along the normal [mm].
+    """
     mate, pair = free.mate, flanks.pair
     teeth, row = np.unique(stations.point_tooth, return_inverse=True)
     facing = Facing.of_teeth(PairRotation(pair, stations.angle), teeth, free)[row]
     base, cosine = pair.gears[mate].base_radius, math.cos(pair.pinion.base_helix_angle)
+    arc = nominal_arcs(pair, mate, stations.roll_distance)
 
     def gaps(distance: Floats) -> Floats:
-        roll = np.sqrt(np.maximum(2.0 * base * (arc[:, None] + distance), 0.0))
+        roll = np.sqrt(np.maximum(2.0 * base * (arc[:, None] + mate.sign * distance), 0.0))
         z = np.broadcast_to(stations.point_z[:, None], roll.shape)
         return flanks.extended_gap(facing, free, roll, z)[0] * cosine
 

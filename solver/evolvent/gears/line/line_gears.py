@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from evolvent.fem.material import contact_modulus
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.line.flank_compliance import SAME, FlankCompliance
+from evolvent.gears.line.flank_compliance import FlankCompliance
 from evolvent.gears.line.line_compliance import line_compliance
-from evolvent.gears.line.line_equilibrium import (
-    WIDEST,
-    LineEquilibrium,
-    LineSystem,
-    half_width,
-    line_equilibrium,
-)
-from evolvent.gears.line.line_gap import LineGap, line_gap, nominal_arcs
+from evolvent.gears.line.line_equilibrium import WIDEST, LineSystem, half_width
+from evolvent.gears.line.line_gap import GapProfile, LineGap, nominal_arcs
 from evolvent.gears.line.stations import Stations, stations_at
 from evolvent.gears.unloaded_error import RigidFlanks
 from evolvent_meshes.arrays import Bools, Floats
-from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
@@ -33,66 +26,65 @@ ROWS = 1.7
 """Half-width w of the half-ellipse over the mean row of the flank's mesh. A narrower one is not carried by the mesh."""
 NARROWEST = 0.3
 """Least half-width w near the end of a flank, over that elsewhere."""
-
-
+LEAST_SHARE = 0.5
+"""Least height of a layer at an end of the common face over that of the others."""
 MOST_ON_EDGES = 1e-2
 """Largest part of the load that the edges of tips may bear in line contact. Where they bear 3.5 % of it (Yang's pair
 without relief), the transmission error is 0.6 % off."""
-
-
+LEAST_REACH = 2e-3
+"""Least distance between the points through which the gap is fitted, over the relative radius of curvature."""
 EDGE_REACH = 2.0
 """Half-widths of the contact from the edge of a tip within which a load counts as borne by it. Resolved contacts have
 pressure in the last row of cells before the edge there."""
 
 
-class TooWide(ResultError):
-    """Error for a contact that is too wide for the meshes of a line contact."""
-
-
 @dataclass(frozen=True, eq=False)
 class LinePosition:
-    """A position of a line contact, under any torque."""
+    """A position of a line contact."""
 
     stations: Stations
     """Stations on the lines."""
+    profile: GapProfile
+    """Gap across the lines, at the points of the stations."""
     gap: LineGap
-    """Gap at the points of the stations."""
+    """Least gap at the points of the stations."""
     system: LineSystem
     """Equations for the loads per length."""
+    width: Floats
+    """(p,) half-width w of the half-ellipse at the points [mm]."""
     to_tip: Floats
-    """(p,) distance of the points of the stations from the nearest edge of a tip [mm of profile arc]."""
-    whole_width: float
-    """Half-width w away from the ends of the flanks [mm]."""
+    """(p,) distance of the points from the nearest edge of a tip [mm of profile arc]."""
 
-    def under(self, force: float) -> LineEquilibrium:
-        """Equilibrium under a force along the line of action, in the transverse section [N; N/mm in the plane].
-
-        Raises NotConverged, TooWide.
-        """
-        found = line_equilibrium(self.system, force)
-        if (self._half_width(found.load) > WIDEST * self.whole_width).any():
-            raise TooWide(
-                f"line contact: wanted a contact of at most {WIDEST:g} times the half-width of {self.whole_width:.3g} "
-                "mm on which the meshes carry its load, found a wider one; lower the torque, or resolve the contact "
-                '(mesh.level = "quick")'
-            )
-        return found
+    def fitted(self, load: Floats) -> LinePosition:
+        """The position with gap and curvature fitted over the width of the contact under loads per length (m,)
+        [N/mm]."""
+        reach = np.maximum(self.half_width(load), LEAST_REACH * self.profile.radius)
+        gap, mean = self.profile.fitted(self.gap.shift, reach), self.stations.mean
+        return replace(self, gap=gap, system=replace(self.system, gap=mean(gap.gap), radius=mean(gap.radius)))
 
     def on_edges(self, load: Floats) -> float:
         """Part of the loads per length (m,) [N/mm] that bear on edges of tips or near to them."""
-        force = self.stations.hats @ load
-        return float(force[self.bears_on_edge(load)].sum() / force.sum())
+        return self._part(load, self.bears_on_edge(load))
 
     def bears_on_edge(self, load: Floats) -> Bools:
         """Points (p,) that bear on the edge of a tip or near to it under loads per length (m,) [N/mm]."""
-        half = self._half_width(load)
+        half = self.half_width(load)
         return np.asarray((half > 0.0) & (self.gap.edge | (EDGE_REACH * half > self.to_tip)))
 
-    def _half_width(self, load: Floats) -> Floats:
-        """Half-width b (p,) of the contact at the points, under loads per length (m,) [N/mm]."""
+    def too_wide(self, load: Floats) -> float:
+        """Part of the loads per length (m,) [N/mm] whose contact is wider than the half-ellipse allows, away from edges
+        of tips."""
+        return self._part(load, (self.half_width(load) > WIDEST * self.width) & ~self.bears_on_edge(load))
+
+    def half_width(self, load: Floats) -> Floats:
+        """Half-width b (p,) of the contact at the points [mm], under loads per length (m,) [N/mm]."""
         hats = self.stations.hats
         at_points = np.asarray(hats @ load) / np.asarray(hats.sum(axis=1)).ravel()
         return half_width(at_points, self.gap.radius, self.system.modulus)
+
+    def _part(self, load: Floats, points: Bools) -> float:
+        force = self.stations.hats @ load
+        return float(force[points].sum() / force.sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,12 +121,13 @@ class LineGears:
 
     @property
     def layers(self) -> Floats | None:
-        """Ends (l + 1,) of the layers of the coarser mesh on the common face [mm], ascending; None in the plane."""
+        """Ends (l + 1,) of the narrower gear's layers [mm], ascending, of which parts shorter than half of a layer are
+        taken together with the next one; None in the plane."""
         if self.spacing is None:
             return None
-        heights = min((gear.heights[::2] for gear in self.gears), key=len)
-        half = 0.5 * self.pair.face_width
-        return np.array([-half, *heights[np.abs(heights) < half - SAME], half])
+        heights = min((gear.heights[::2] for gear in self.gears), key=np.ptp)
+        half, shortest = 0.5 * self.pair.face_width, LEAST_SHARE * float(np.diff(heights).max())
+        return np.array([-half, *heights[np.abs(heights) < half - shortest], half])
 
     @property
     def half_width(self) -> float:
@@ -144,13 +137,14 @@ class LineGears:
     def position(self, angle: float) -> LinePosition:
         """The gears at a rotation of the pinion [rad]."""
         stations = stations_at(self.pair, angle, self.spacing)
-        gap = line_gap(self.flanks, stations, self.free)
+        profile = GapProfile.of(self.flanks, stations, self.free)
+        gap = profile.least()
         shift, width = self._carried(stations, gap.shift)
         B = line_compliance(self.pair, self.gears, stations, shift, width)
         L, mean = stations.lengths, stations.mean
         H = L * math.cos(self.pair.pinion.base_helix_angle)
         system = LineSystem(B, L, mean(gap.gap), mean(gap.radius), mean(np.log(width)), H, self.modulus)
-        return LinePosition(stations, gap, system, self._to_tip(stations, gap.shift), self.half_width)
+        return LinePosition(stations, profile, gap, system, width, self._to_tip(stations, gap.shift))
 
     def _to_tip(self, stations: Stations, shift: Floats) -> Floats:
         """Distances (p,) from the nearest edge of a tip [mm]. shift: (p,) as of `LineGap`."""

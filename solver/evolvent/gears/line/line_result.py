@@ -7,9 +7,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.contact.hertz import line_peak_pressure
-from evolvent.gears.line.line_equilibrium import LineEquilibrium
+from evolvent.gears.line.line_equilibrium import WIDEST, LineEquilibrium, line_equilibrium
 from evolvent.gears.line.line_gears import LinePosition
+from evolvent.gears.pressure.relief_starts import ContactWidth, covering, kinks
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import ResultError
+from evolvent_meshes.gears.pair import GearPair
+
+MOST_TOO_WIDE = 1e-2
+"""Largest part of the load whose contact may be too wide for the half-ellipse."""
+
+
+class TooWide(ResultError):
+    """Error for a contact that is too wide for the meshes of a line contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +39,15 @@ class LineResult:
 
         Raises NotConverged, TooWide.
         """
-        system = position.system
-        return LineResult(position, position.under(force), float((system.H / system.length)[0]))
+        there = position.fitted(line_equilibrium(position.system, force).load)
+        found, system = line_equilibrium(there.system, force), there.system
+        if (part := there.too_wide(found.load)) > MOST_TOO_WIDE:
+            raise TooWide(
+                f"line contact: wanted a contact of at most {WIDEST:g} times the width on which the meshes carry its "
+                f"load, found a wider one under {100 * part:.2g} % of the load; lower the torque, or resolve the "
+                'contact (mesh.level = "quick")'
+            )
+        return LineResult(there, found, float((system.H / system.length)[0]))
 
     @property
     def teeth(self) -> list[int]:
@@ -61,18 +78,14 @@ class LineResult:
         system = self.position.system
         return np.asarray(line_peak_pressure(self.equilibrium.load, system.radius, system.modulus))
 
-    @property
-    def largest_pressure(self) -> float:
-        """Largest p_0 [MPa] of stations that bear on no edge of a tip; 0 where all do."""
-        position = self.position
-        at_edge = position.stations.mean(position.bears_on_edge(self.equilibrium.load).astype(float)) > 0.0
-        return float(np.where(at_edge, 0.0, self.peak_pressure).max())
-
-    def load_at(self, tooth: int, heights: Floats) -> Floats:
-        """Load per length (k,) [N/mm] of a tooth pair at heights (k,) [mm]; 0 beyond its line."""
-        stations = self.position.stations
-        own = stations.tooth == tooth
-        return np.interp(heights, stations.z[own], self.equilibrium.load[own], left=0.0, right=0.0)
+    def largest_pressure(self, pair: GearPair) -> float:
+        """Largest p_0 [MPa] of stations that neither bear on the edge of a tip nor cover the start of a linear relief,
+        whose pressure is not Hertz'; 0 where none is left."""
+        position, load = self.position, self.equilibrium.load
+        half, ξ = position.half_width(load), position.stations.roll_distance
+        contact = ContactWidth(ξ, half, position.gap.radius, np.zeros((len(ξ), 2)))
+        other = position.bears_on_edge(load) | covering(kinks(pair), contact)
+        return float(np.where(position.stations.mean(other.astype(float)) > 0.0, 0.0, self.peak_pressure).max())
 
     def layer_load(self, layers: Floats | None) -> Floats:
         """Load per face width (l,) of all tooth pairs in layers over that of the whole face. layers: their ends

@@ -12,6 +12,7 @@ The contact line of a helical pair crosses the kink at every position, in some s
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,8 +78,11 @@ class ContactWidth:
 
 def relief_starts(pair: GearPair) -> tuple[ReliefStart, ...]:
     """The places of a spur pair; empty for a helical pair. Wear and measured flanks do not change them."""
-    if pair.pinion.base_helix_angle != 0.0:
-        return ()
+    return () if pair.pinion.base_helix_angle != 0.0 else kinks(pair)
+
+
+def kinks(pair: GearPair) -> tuple[ReliefStart, ...]:
+    """The places of a spur or helical pair."""
     found = []
     for member, gear, pitch_point in zip(Member, pair.gears, pair.pitch_point_roll_lengths):
         for kink in gear.flank_depth.kinks:
@@ -90,7 +94,12 @@ def relief_starts(pair: GearPair) -> tuple[ReliefStart, ...]:
 
 def over_relief_starts(pair: GearPair, contact: ContactWidth) -> Bools:
     """Whether contacts (n,) cover the start of a relief: (n,) bool."""
-    covered = [start.covered(contact) for start in relief_starts(pair)]
+    return covering(relief_starts(pair), contact)
+
+
+def covering(starts: Sequence[ReliefStart], contact: ContactWidth) -> Bools:
+    """Whether contacts (n,) cover one of some kinks: (n,) bool."""
+    covered = [start.covered(contact) for start in starts]
     return np.any([np.zeros(len(contact.roll_distance), dtype=bool), *covered], axis=0)
 
 

@@ -26,8 +26,8 @@ WINDOW = 1.6
 """Half-width of the contact window in largest Hertz half-widths."""
 
 
-LINE_CELLS = "hexahedron", 2, None
-"""Cells, order and elements across the contact width of meshes for line contact."""
+LINE_CELLS = "hexahedron", 2, None, False
+"""Cells, order, elements across the contact width and levels of meshes for line contact."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,8 @@ class MeshSettings:
         one_of("mesh level", self.level, LEVELS)
         one_of("mesh shape", self.shape, SHAPES)
         one_of("mesh order", self.order, (1, 2))
-        if self.level == "line" and (self.shape, self.order, self.elements_per_contact_width) != LINE_CELLS:
+        given = self.shape, self.order, self.elements_per_contact_width, bool(self.two_level)
+        if self.level == "line" and given != LINE_CELLS:
             refuse("level", 'hexahedra of order 2 beside level "line", and nothing else', self, "leave the others out")
         if self.two_level and (self.shape, self.order) != ("hexahedron", 2):
             remedy = "leave them out, or two_level"

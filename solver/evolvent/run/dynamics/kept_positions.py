@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evolvent.dynamics.excitation.loaded_mesh import COLUMNS
+from evolvent.dynamics.excitation.loaded_mesh import COLUMNS, LINE_COLUMNS
 from evolvent.results.archive.archive import COARSE, fingerprint
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Arrays, Store
@@ -53,7 +53,8 @@ class KeptPositions:
         """Figures of the positions in archived arrays, by the number of the position. Raises ArchiveError where the
         arrays hold others."""
         numbers, figures = arrays.get("numbers", np.zeros(0)), arrays.get("figures", np.zeros(0))
-        fits = figures.ndim == 3 and numbers.shape == figures.shape[:1] and figures.shape[-1] >= COLUMNS
+        counts = (COLUMNS, *range(LINE_COLUMNS, LINE_COLUMNS + figures.shape[-1]))
+        fits = figures.ndim == 3 and numbers.shape == figures.shape[:1] and figures.shape[-1] in counts
         if numbers.dtype.kind != "i" or figures.dtype.kind != "f" or not fits:
             raise ArchiveError(
                 f"{self.store.folder.out / self.name}: wanted numbers of positions with their figures, found other "

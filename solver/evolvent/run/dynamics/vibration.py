@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from evolvent.dynamics.body_sentences import bodies_said
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
@@ -26,6 +26,8 @@ from evolvent.run.dynamics.vibration_errors import SWEEPS, errors_over_speed, vi
 from evolvent.run.progress import Progress
 from evolvent.scene.schema.dynamics import DynamicsSection
 
+SAME_TORQUE = 1e-9
+"""Relative difference below which two torques count as one."""
 SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
 
 
@@ -93,11 +95,17 @@ def _over_torque(
 ) -> TorqueMap:
     """The map over torque and speed; without rows where the section asks for none. vibrating: under the scene's torque.
     """
-    torques = [problem.torque * percent / 100.0 for percent in section.map_percents]
+    heaviest = float(excitation.loaded.torques[-1]) * (1.0 + SAME_TORQUE)  # others may be left out in line contact
+    asked = [problem.torque * percent / 100.0 for percent in section.map_percents]
+    torques = [torque for torque in asked if torque <= heaviest]
     if torques:
         progress.stage(MAP, len(torques))
     speeds = map_list(vibrating.natural_speed, section)
-    return torque_map(excitation, problem, settings, torques, speeds, progress.advance)
+    found = torque_map(excitation, problem, settings, torques, speeds, progress.advance)
+    if len(torques) == len(asked):
+        return found
+    left_out = f"torque_map.csv: nothing above {1e-3 * torques[-1] if torques else 0.0:.4g} N·m, see the excitation."
+    return replace(found, warnings=(*found.warnings, left_out))
 
 
 def _warnings(

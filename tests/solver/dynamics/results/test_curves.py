@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.dynamics.results.curves import LINE_OFF, LINE_VARIES, LOADED, TANGENT, PitchCurve
+from evolvent.dynamics.results.curves import LINE_LEAST, LINE_OFF, LINE_VARIES, LOADED, TANGENT, PitchCurve
 from evolvent_meshes.arrays import Floats
 
 
@@ -45,6 +45,9 @@ def test_line_contact_is_off_by_more_than_its_meshes() -> None:
     assert resolved.bars == pytest.approx(0.0, abs=1e-12)
     assert line.mean_error - resolved.mean_error == pytest.approx(LINE_OFF[LOADED] * 10.0)
     assert line.peak_to_peak_error - resolved.peak_to_peak_error == pytest.approx(LINE_VARIES[LOADED] * 6.0)
+    flat = wave(40, 10.0, 0.1)
+    line, resolved = (PitchCurve(LOADED, flat, flat, 2, in_line_contact=each) for each in (True, False))
+    assert line.peak_to_peak_error - resolved.peak_to_peak_error == pytest.approx(LINE_LEAST[LOADED] * 10.0)
 
 
 def test_harmonics_do_not_depend_on_the_mean() -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent.gears.line.line_gap import LineGap, gap_across, line_gap, nominal_arcs
+from evolvent.gears.line.line_gap import GapProfile, LineGap, gap_across
 from evolvent.gears.line.stations import Stations, stations_at
 from evolvent.gears.problem.flank_deviations import FlankCharts
 from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
@@ -24,7 +24,7 @@ DESIGNED: FlankCharts = (None, None)
 
 def found(pair: GearPair, angle: float = 0.05, free: Member = Member.PINION) -> tuple[Stations, LineGap]:
     stations = stations_at(pair, angle, 0.5 if pair.pinion.helix_angle else None)
-    return stations, line_gap(RigidFlanks(pair, DESIGNED), stations, free)
+    return stations, GapProfile.of(RigidFlanks(pair, DESIGNED), stations, free).least()
 
 
 def on_path(pair: GearPair, stations: Stations) -> Bools:
@@ -53,11 +53,11 @@ def test_relieved_flanks_have_the_gap_of_a_fine_search() -> None:
     flanks, free = RigidFlanks(pair, DESIGNED), Member.PINION
     inside = np.flatnonzero(on_path(pair, stations))[::7]
     across = np.linspace(-1.2, 1.2, 4001)
-    values = gap_across(flanks, stations, free, nominal_arcs(pair, free.mate, stations.roll_distance))
+    values = gap_across(flanks, stations, free)
     fine = values(np.broadcast_to(across, (len(stations.point_z), len(across))))[inside]
     best = np.nanargmin(fine, axis=1)
     assert gap.gap[inside] == pytest.approx(fine[np.arange(len(inside)), best], abs=2e-5)
-    assert -gap.shift[inside] == pytest.approx(across[best], abs=0.02)
+    assert gap.shift[inside] == pytest.approx(across[best], abs=0.02)
     assert gap.gap[inside].max() > 5e-3
 
 

@@ -12,7 +12,8 @@ from evolvent.dynamics.excitation.loaded_mesh import EdgeContact, in_line_contac
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.line.line_compliance import line_compliance
 from evolvent.gears.line.line_gap import nominal_arcs
-from evolvent.gears.line.line_gears import LineGears, TooWide
+from evolvent.gears.line.line_gears import LineGears
+from evolvent.gears.line.line_result import LineResult, TooWide
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.problem.gear_problem import MeshSettings
 from evolvent.scene.gear_problem import gear_problem
@@ -133,4 +134,4 @@ def test_edges_that_bear_are_said() -> None:
 def test_too_wide_a_contact_is_refused() -> None:
     """Problem: so much load that the contact is wider than the mesh carries it."""
     with pytest.raises(TooWide, match="lower the torque"):
-        spur().position(0.06).under(5e4)
+        LineResult.of(spur().position(0.06), 5e4)

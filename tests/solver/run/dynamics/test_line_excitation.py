@@ -85,10 +85,9 @@ def test_results_do_not_depend_on_ranks(whole: Path, tmp_path: Path, run_script:
 
 
 def test_facts_have_the_figures_of_a_line_contact(whole: Path, tmp_path: Path) -> None:
-    """K_Hβ is 1 in the plane, without error; p_0 has one. Where the contact is resolved they are null."""
+    """p_0 has an error; K_Hβ is null in the plane. Where the contact is resolved both are null."""
     facts = json.loads((whole / "excitation.json").read_text(encoding="utf-8"))
-    assert facts["mesh_level"] == "line" and facts["face_load_factor"] == 1.0
-    assert facts["face_load_factor_error"] == pytest.approx(0.0, abs=1e-12)
+    assert facts["mesh_level"] == "line" and facts["face_load_factor"] is None
     assert 500.0 < facts["largest_pressure_MPa"] < 2000.0
     assert 0.0 < facts["largest_pressure_MPa_error"] < 0.1 * facts["largest_pressure_MPa"]
     quietly(excitation("mesh.level=quick", "output.error_bars=false"), tmp_path)

@@ -55,10 +55,11 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "gears.sweep": (
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
     ),
+    "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.line": (
         "meshes", "meshes.gears", "fem", "contact", "contact.newton", "gears.ring", "gears.two_level", "gears",
+        "gears.pressure",
     ),
-    "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.solution": (
         "meshes", "fem.backend", "contact.problem", "gears.problem", "gears", "gears.sweep",
     ),
@@ -149,8 +150,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "check": (
         "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears.problem", "gears.meshing", "gears",
-        "gears.line", "gears.sweep", "gears.pressure", "dynamics.oscillator", "dynamics", "strength.fatigue", "scene",
-        "scene.schema",
+        "gears.line", "gears.sweep", "gears.pressure", "dynamics.oscillator", "dynamics.excitation", "dynamics",
+        "strength.fatigue", "scene", "scene.schema",
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",

@@ -23,8 +23,8 @@ def figure(text: str, name: str) -> float:
 
 
 def test_figures_are_those_of_an_excitation() -> None:
-    """Exact: transmission error and stiffness of `evolvent excitation --level line` at the same 60 positions; no K_Hβ in
-    the plane; the scene's own level and order are without effect."""
+    """Exact: transmission error and stiffness of `evolvent excitation --level line` at the same 60 positions; no K_Hβ
+    in the plane; the scene's own level and order are without effect."""
     text = contact_table(spur_scene(*RELIEVED, "mesh.order=1", 'exact.parts=["window"]'))
     angles = 2.0 * np.pi / 50.0 * np.arange(60) / 60
     mesh = loaded_mesh(model_of(spur_scene(*RELIEVED, "mesh.level=line")), [170e3], angles)

@@ -78,5 +78,6 @@ def line_figures(model: GearModel, torques: Sequence[float], angles: Floats) -> 
             found = LineResult.of(position, torque / radius / width)
             load, given = found.equilibrium.load, torque / width * model.pair.pinion.base_radius / radius
             mesh = found.transmission_error, found.equilibrium.stiffness * width, given, 0.0
-            rows.append([*mesh, position.on_edges(load), found.largest_pressure(model.pair), *found.layer_load(gears.layers)])
+            more = found.position.on_edges(load), found.largest_pressure(model.pair)
+            rows.append([*mesh, *more, *found.layer_load(gears.layers)])
         yield np.array(rows)

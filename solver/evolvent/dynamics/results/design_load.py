@@ -60,14 +60,14 @@ class ExcitationFacts:
     """Mesh stiffness c_γα of ISO 6336-1:2006, clause 9, Method B, under the heaviest torque; null likewise."""
     face_load_factor: float | None
     """Face load factor K_Hβ (ISO 6336-1:2006, 7.2.2) under the heaviest torque in torques_Nm: on the layers of the mesh
-    in the mean over the pitch, without shafts and housing but for pair.misalignment_um; null in the plane, and where the
-    contact is resolved (`evolvent run` has it)."""
+    in the mean over the pitch, without shafts and housing but for pair.misalignment_um; null in the plane, and where
+    the contact is resolved (`evolvent run` has it)."""
     face_load_factor_error: float | None
     """Estimated error of the face load factor; null without error bars."""
     largest_pressure_MPa: float | None
     """Largest of Hertz' p_0 at the positions under the heaviest torque in torques_Nm, without friction, away from edges
-    of tips and from starts of linear reliefs, with the radii of curvature of the modified flanks; null where the contact
-    is resolved."""
+    of tips and from starts of linear reliefs, with the radii of curvature of the modified flanks; null where the
+    contact is resolved."""
     largest_pressure_MPa_error: float | None
     """Estimated error of the largest pressure; null without error bars."""
     warnings: tuple[str, ...]

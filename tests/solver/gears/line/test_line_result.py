@@ -70,8 +70,8 @@ def test_peak_pressure_is_that_of_the_half_width() -> None:
 
 
 def test_pressure_over_a_kink_does_not_count() -> None:
-    """Problem: linear reliefs, of which contacts at some positions cover the start. Exact: there p_0 is that of the other
-    tooth pair alone, or none; with parabolic reliefs all count."""
+    """Problem: linear reliefs, of which contacts at some positions cover the start. Exact: there p_0 is that of the
+    other tooth pair alone, or none; with parabolic reliefs all count."""
     scene = spur_scene("mesh.level=line", "pinion.tip_relief_um=20", "wheel.tip_relief_um=20")
     gears, pair = LineGears.of(model_of(scene)), scene.gear_pair()
     angles = 2.0 * np.pi / 50.0 * np.arange(24) / 24

@@ -38,7 +38,8 @@ def relieved(relief_um: float, form: str = "parabolic") -> tuple[str, ...]:
 
 def case(name: str, scene: Path, percents: tuple[float, ...], *settings: str) -> Case:
     """A pair of demos/ with some settings, frictionless."""
-    return Case(name, gear_problem(load_scene(scene, [*PLAIN, "contact.friction=0.0", *settings])), percents)
+    problem = gear_problem(load_scene(scene, [*PLAIN, "contact.friction=0.0", *settings]))
+    return Case(name, problem, percents, IN_PLANE if problem.is_plane else Case.positions)
 
 
 FINE = "mesh.level=fine", 'exact.parts=["coarse-body"]'
@@ -54,6 +55,8 @@ ALL = (
     case("23/81", ROOT / FIRST, (50.0, 100.0), *SLENDER, *relieved(20.0), "load.torque_Nm=100"),
 )
 """Pairs by name; those in the plane come first, as they take least."""
+IN_PLANE = 20
+"""Positions of pairs in the plane, some of which are at kinks of linear reliefs."""
 SPUR_PAIRS, HELICAL_PAIRS = 5, 10
 """Numbers of random pairs."""
 SHARE = 14.0

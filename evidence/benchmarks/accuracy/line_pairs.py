@@ -15,6 +15,9 @@ from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import SceneError, load_scene, scene_from_text
 
+IN_PLANE = 20
+"""Positions of pairs in the plane, some of which are at kinks of linear reliefs."""
+
 
 @dataclass(frozen=True)
 class Case:
@@ -55,8 +58,6 @@ ALL = (
     case("23/81", ROOT / FIRST, (50.0, 100.0), *SLENDER, *relieved(20.0), "load.torque_Nm=100"),
 )
 """Pairs by name; those in the plane come first, as they take least."""
-IN_PLANE = 20
-"""Positions of pairs in the plane, some of which are at kinks of linear reliefs."""
 SPUR_PAIRS, HELICAL_PAIRS = 5, 10
 """Numbers of random pairs."""
 SHARE = 14.0

@@ -14,7 +14,6 @@ import scipy.sparse as sp
 
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, DirectedCompliance
-from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.arrays import Floats, Ints, different
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.gear import GearParameters
@@ -40,11 +39,9 @@ class FlankCompliance:
 
     @staticmethod
     def of(body: GearBody) -> FlankCompliance:
-        """The compliance of a condensed gear; of a gear in levels that of its coarse sector."""
-        chain = body.chain
-        coarse, flank = (chain.coarse, chain.flank) if isinstance(chain, TwoLevelRing) else (chain, body.flank)
-        assert isinstance(coarse, ChainedCompliance)
-        points, base = flank.points, body.gear.base_radius
+        """The compliance of a gear that was condensed for line contact."""
+        chain, points, base = body.chain, body.flank.points, body.gear.base_radius
+        assert isinstance(chain, ChainedCompliance)
         height = points[:, 2] if body.d == 3 else np.zeros(len(points))
         radius, row = different(np.hypot(points[:, 0], points[:, 1]), SAME)
         heights, level = different(height, SAME)
@@ -52,7 +49,7 @@ class FlankCompliance:
         nodes[row, level] = np.arange(len(points))
         roll = np.sqrt((radius - base) * (radius + base))
         normals = Flank(body.gear).helicoid_normal(roll[:, None], heights[None, :])[..., : body.d]
-        directed = coarse.directed(nodes.ravel(), normals.reshape(-1, body.d))
+        directed = chain.directed(nodes.ravel(), normals.reshape(-1, body.d))
         return FlankCompliance(body.gear, body.member.sign, roll**2 / (2.0 * base), heights, directed)
 
     def shapes(self, arc: Floats, z: Floats) -> sp.csr_matrix:

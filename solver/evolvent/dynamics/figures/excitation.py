@@ -63,9 +63,10 @@ def excitation_figure(
     """Transmission error and stiffness over the pitch under each torque, the force over the deflection, and the
     peak-to-peak transmission error over the torque, with error bars where they are known."""
     pitch, torques = PitchColumns.of(rows), facts.torques_Nm
+    solved = "Line contact" if facts.mesh_level == "line" else f"Mesh {facts.mesh_level}"
     figure = sheet(
         "Excitation by the mesh: transmission error and mesh stiffness over a pitch, without friction",
-        f"{facts.title}. Mesh {facts.mesh_level}, {facts.positions} positions, {len(torques)} torques from "
+        f"{facts.title}. {solved}, {facts.positions} positions, {len(torques)} torques from "
         f"{torques[0]:.4g} to {torques[-1]:.4g} N·m.{_design(facts)}",
         (11.0, 7.6),
     )

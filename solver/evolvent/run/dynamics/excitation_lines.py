@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from evolvent.dynamics.results.curves import LOADED, TANGENT
+from evolvent.dynamics.results.design_load import EXCITATION_FACTS
 from evolvent.dynamics.results.tables import HARMONICS, HarmonicRow
 from evolvent.results.archive.error_bar_data import plus_minus
 
@@ -16,7 +18,8 @@ NAMES = {LOADED: ("transmission error", "µm"), TANGENT: ("tangent stiffness", "
 
 
 def excitation_lines(folder: Path) -> Iterator[str]:
-    """Peak-to-peak transmission error and mean tangent stiffness under the lightest and the heaviest torque."""
+    """Peak-to-peak transmission error and mean tangent stiffness under the lightest and the heaviest torque; in line
+    contact K_Hβ and p_0 under the heaviest one."""
     rows = [row for row in HARMONICS.read(folder) if row.harmonic == 1]
     torques = [row.torque_Nm for row in rows if row.quantity == LOADED]
     for torque in dict.fromkeys((min(torques), max(torques))):
@@ -25,6 +28,17 @@ def excitation_lines(folder: Path) -> Iterator[str]:
             f"{torque:.4g} N·m: transmission error {_peak_to_peak(error)} µm peak to peak, tangent stiffness "
             f"{plus_minus(stiffness.mean, stiffness.mean_error, 1)} N/µm in the mean"
         )
+    facts = EXCITATION_FACTS.read(folder)
+    figures = (
+        ("face load factor {}", facts.face_load_factor, facts.face_load_factor_error, 2),
+        ("p_0 {} MPa away from edges and kinks", facts.largest_pressure_MPa, facts.largest_pressure_MPa_error, 0),
+    )
+    known = [
+        words.format(plus_minus(value, error or math.nan, digits))
+        for words, value, error, digits in figures if value is not None
+    ]
+    if known:
+        yield f"{max(torques):.4g} N·m, line contact: {', '.join(known)}"
 
 
 def large_bars(rows: Sequence[HarmonicRow]) -> Iterator[str]:

@@ -211,7 +211,7 @@ WRONG = {
     "torque that bends the teeth": (lambda: condense(changed(torque=1e8)), "as strains must stay small"),
     "torque without a contact": (lambda: condense(changed(torque=1e-6)), "wanted a contact with a half-width"),
     "third gear": (lambda: changed(torque_on=2), "torque_on: wanted"),
-    "unknown level": (lambda: MeshSettings("rough"), "mesh level: wanted 'quick' or 'standard' or 'fine'"),  # type: ignore[arg-type]
+    "unknown level": (lambda: MeshSettings("rough"), "mesh level: wanted 'line' or 'quick' or 'standard' or 'fine'"),  # type: ignore[arg-type]
     "order 3": (lambda: MeshSettings(order=3), "mesh order: wanted 1 or 2"),  # type: ignore[arg-type]
     "no elements": (lambda: MeshSettings(elements_per_contact_width=0.0), "elements_per_contact_width: wanted"),
 }

@@ -57,7 +57,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.line": (
-        "meshes", "meshes.gears", "fem", "contact", "contact.newton", "gears.ring", "gears",
+        "meshes", "meshes.gears", "fem", "contact", "contact.newton", "gears.ring", "gears.two_level", "gears",
         "gears.pressure",
     ),
     "gears.solution": (

@@ -56,7 +56,7 @@ class LineRow:
     line_load_percent: float
     """Root mean square of the deviations of line loads in the layers of the resolved mesh, of the largest line load."""
     line_load_end_percent: float
-    """The same in the outer layers of the face alone; nan in the plane."""
+    """Root mean square of these deviations in the outer layers of the face alone; nan in the plane."""
     face_load_factor: float
     """K_Hβ of the resolved contact; 1 in the plane."""
     face_load_percent: float
@@ -132,7 +132,7 @@ class _Both:
     lines: list[LineResult]
     mesh: LoadedMesh
     number: int
-    """Of the torque."""
+    """Index of the torque."""
 
     def row(self, torque: float, unloaded: Floats, bars: Floats, seconds: tuple[float, float]) -> LineRow:
         error = np.array([result.transmission_error for result in self.resolved])

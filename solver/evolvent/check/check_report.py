@@ -226,6 +226,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
 
 
 def _across(problem: GearProblem, levels: bool) -> Row:
+    """Elements across the width of the contact. levels: whether the flanks have levels of their own."""
     return _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(problem, levels))
 
 

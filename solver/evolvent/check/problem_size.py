@@ -18,6 +18,7 @@ from evolvent.gears.meshing.root_meshes import finer_roots
 from evolvent.gears.meshing.sector_sizes import SectorSize, levelled_sizes, one_mesh_sizes, root_dofs, sector_size
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.line_level import LINE
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
@@ -244,7 +245,7 @@ def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:
         kept = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in long_ways))
         scene = scene.model_copy(update={"exact": kept})
         yield f"{' and '.join(long_ways)} out of exact.parts (--exact)", scene
-    if scene.mesh.level == "line":
+    if scene.mesh.level == LINE:
         return
     if (count := scene.mesh.elements_per_contact_width) is None:
         for level in LEVELS[LEVELS.index(scene.mesh.level) + 1 :]:

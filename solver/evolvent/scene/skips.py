@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from evolvent.gears.meshing.levelled_meshes import LONGEST, has_long_cells, is_large, is_two_level
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.line_level import LINE
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.output import ExactSection, OutputSection, SkipName
 
@@ -54,7 +55,7 @@ def _always(_: Scene) -> bool:
 
 
 def _resolves(scene: Scene) -> bool:
-    return scene.mesh.level != "line"
+    return scene.mesh.level != LINE
 
 
 def _pitch_sentence(scene: Scene) -> str:

@@ -71,6 +71,7 @@ def line_figures(model: GearModel, torques: Sequence[float], angles: Floats) -> 
     exactly, and no position stores power. Raises NotConverged, TooWide.
     """
     gears, radius, width = LineGears.of(model), model.base_radius, model.width_factor
+    layers = gears.layers
     for angle in angles:
         position = gears.position(float(angle))
         rows = []
@@ -79,5 +80,5 @@ def line_figures(model: GearModel, torques: Sequence[float], angles: Floats) -> 
             load, given = found.equilibrium.load, torque / width * model.pair.pinion.base_radius / radius
             mesh = found.transmission_error, found.equilibrium.stiffness * width, given, 0.0
             more = found.position.on_edges(load), found.largest_pressure(model.pair)
-            rows.append([*mesh, *more, *found.layer_load(gears.layers)])
+            rows.append([*mesh, *more, *found.layer_load(layers)])
         yield np.array(rows)

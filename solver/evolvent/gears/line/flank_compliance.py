@@ -14,12 +14,10 @@ import scipy.sparse as sp
 
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, DirectedCompliance
-from evolvent_meshes.arrays import Floats, Ints, different
+from evolvent.gears.two_level.flank_lattice import FlankLattice
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.gear import GearParameters
-
-SAME = 1e-6
-"""Radii or heights closer than this are one row or level [mm]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,15 +40,11 @@ class FlankCompliance:
         """The compliance of a gear that was condensed for line contact."""
         chain, points, base = body.chain, body.flank.points, body.gear.base_radius
         assert isinstance(chain, ChainedCompliance)
-        height = points[:, 2] if body.d == 3 else np.zeros(len(points))
-        radius, row = different(np.hypot(points[:, 0], points[:, 1]), SAME)
-        heights, level = different(height, SAME)
-        nodes = np.full((len(radius), len(heights)), -1)
-        nodes[row, level] = np.arange(len(points))
-        roll = np.sqrt((radius - base) * (radius + base))
-        normals = Flank(body.gear).helicoid_normal(roll[:, None], heights[None, :])[..., : body.d]
-        directed = chain.directed(nodes.ravel(), normals.reshape(-1, body.d))
-        return FlankCompliance(body.gear, body.member.sign, roll**2 / (2.0 * base), heights, directed)
+        lattice, flank = FlankLattice.of(np.pad(points, ((0, 0), (0, 3 - body.d)))), Flank(body.gear)
+        roll = flank.roll_length(lattice.radius)
+        normals = flank.helicoid_normal(roll[:, None], lattice.height)[..., : body.d]
+        directed = chain.directed(lattice.nodes.ravel(), normals.reshape(-1, body.d))
+        return FlankCompliance(body.gear, body.member.sign, roll**2 / (2.0 * base), lattice.height, directed)
 
     def shapes(self, arc: Floats, z: Floats) -> sp.csr_matrix:
         """Shape functions (p, nodes) at points of the flank, at arcs (p,) and heights (p,) [mm]."""

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from evolvent.contact.hertz import line_half_width
 from evolvent.contact.newton.snes import NotConverged
 from evolvent_meshes.arrays import Bools, Floats
 
@@ -22,11 +23,9 @@ STEPS, CLOSE = 60, 1e-10
 """Most Newton steps, and the change of the loads at which they end, over the largest load."""
 LEAST = 1e-6
 """Least load per length, over the mean one, at which the derivative of φ is taken."""
-
-
 WIDEST = 0.75
 """Largest half-width b of the contact over w: from e^(−¼) = 0.78 on φ would fall with the load. Beyond, b is taken as
-that of w; what is computed then is no line contact (`LinePosition.under`)."""
+that of w; what is computed then is no line contact (`LineResult.of`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +48,6 @@ class LineSystem:
     """Contact modulus E* [MPa]."""
 
 
-
 @dataclass(frozen=True, eq=False)
 class LineEquilibrium:
     """Equilibrium of a line contact."""
@@ -64,12 +62,6 @@ class LineEquilibrium:
     """Number of Newton steps."""
 
 
-def half_width(load: Floats, radius: Floats, modulus: float) -> Floats:
-    """Half-width b of the contact [mm] under loads per length [N/mm], with relative radii of curvature [mm] of the same
-    shape and E* [MPa] (Johnson, 4.43)."""
-    return np.asarray(np.sqrt(4.0 * load * radius / (math.pi * modulus)))
-
-
 def line_equilibrium(system: LineSystem, force: float) -> LineEquilibrium:
     """Equilibrium under a force F along the line of action in the transverse section [N]. Raises NotConverged."""
     L, H, c = system.length, system.H, 2.0 / (math.pi * system.modulus)
@@ -78,7 +70,7 @@ def line_equilibrium(system: LineSystem, force: float) -> LineEquilibrium:
     active = q > 0.0
     for step in range(1, STEPS + 1):
         bounded = np.maximum(q, LEAST * mean)
-        narrower = system.log_width - np.log(half_width(bounded, system.radius, system.modulus))  # ln(w/b)
+        narrower = system.log_width - np.log(line_half_width(bounded, system.radius, system.modulus))  # ln(w/b)
         local = c * (0.25 + np.maximum(narrower, -math.log(WIDEST)))
         logarithmic = 0.5 * c * (narrower > -math.log(WIDEST))
         matrix, a = _matrix(system, active, L * (local - logarithmic)), np.flatnonzero(active)

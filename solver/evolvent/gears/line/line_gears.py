@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from evolvent.contact.hertz import line_half_width
 from evolvent.fem.material import contact_modulus
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.line.flank_compliance import FlankCompliance
 from evolvent.gears.line.line_compliance import line_compliance
-from evolvent.gears.line.line_equilibrium import WIDEST, LineSystem, half_width
+from evolvent.gears.line.line_equilibrium import WIDEST, LineSystem
 from evolvent.gears.line.line_gap import GapProfile, LineGap, nominal_arcs
 from evolvent.gears.line.stations import Stations, stations_at
 from evolvent.gears.unloaded_error import RigidFlanks
@@ -84,7 +85,7 @@ class LinePosition:
         """Half-width b (p,) of the contact at the points [mm], under loads per length (m,) [N/mm]."""
         hats = self.stations.hats
         at_points = np.asarray(hats @ load) / np.asarray(hats.sum(axis=1)).ravel()
-        return half_width(at_points, self.gap.radius, self.system.modulus)
+        return np.asarray(line_half_width(at_points, self.gap.radius, self.system.modulus))
 
     def _part(self, load: Floats, points: Bools) -> float:
         force = self.stations.hats @ load

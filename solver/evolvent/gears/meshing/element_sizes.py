@@ -97,19 +97,11 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
         return _fine_everywhere(line) if problem.options.fine_body else line
     gear, level, needs = problem.pair.gears[member], problem.mesh.level, flank_needs(problem, member)
     depths = needs.depths * min(1.0, DEEPEST * gear.normal_module / float(needs.depths.sum()))
-    more = _neck_elements(float(depths.sum()) / gear.normal_module) - LEAST_NECK
-    core, rim = CORE_AND_RIM[problem.is_plane]
-    resolution = SectorResolution(
-        profile_elements=3 * max(LEAST_ROWS, math.ceil(needs.rows / 3)),
-        face_elements=max(LEAST_LAYERS[level], math.ceil(needs.shear / SHEAR_PER_ELEMENT[level][member])),
-        layer_depths=(depths[0], depths[1], depths[2]),
-        flank_start_diameter=needs.start,
-        size_at=needs.width,
-        neck_elements=LEAST_NECK + more,
-        fillet_elements=SectorResolution.fillet_elements + more,
-        back_elements=SectorResolution.back_elements + more,
-        core_elements=core,
-        rim_elements=rim,
+    rows = 3 * max(LEAST_ROWS, math.ceil(needs.rows / 3))
+    layers = max(LEAST_LAYERS[level], math.ceil(needs.shear / SHEAR_PER_ELEMENT[level][member]))
+    below = _below_flank(problem, depths, gear.normal_module)
+    resolution = replace(
+        below, profile_elements=rows, face_elements=layers, flank_start_diameter=needs.start, size_at=needs.width
     )
     return _fine_everywhere(resolution) if problem.options.fine_body else resolution
 
@@ -117,18 +109,24 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
 def _line_resolution(problem: GearProblem, member: Member) -> SectorResolution:
     """The resolution of a sector for line contact, which does not depend on the torque."""
     gear, active = problem.pair.gears[member], problem.pair.active_start_diameters[member]
-    core, rim = CORE_AND_RIM[problem.is_plane]
     depths = LAYER_DEPTHS * DEEPEST * gear.normal_module / float(LAYER_DEPTHS.sum())
     layers = math.ceil(gear.face_width / (LINE_LAYER * gear.normal_module))
-    more = _neck_elements(DEEPEST) - LEAST_NECK
-    return SectorResolution(
+    return replace(
+        _below_flank(problem, depths, gear.normal_module),
         profile_elements=LINE_ROWS[problem.is_plane],
         face_elements=max(LEAST_LINE_LAYERS, layers, 2 * fewest_layers(gear)),  # a companion has half of them
         end_size_ratio=1.0,
-        layer_depths=(float(depths[0]), float(depths[1]), float(depths[2])),
         flank_start_diameter=_start_before(gear, active, LINE_LAND * gear.normal_module),
         size_at=ContactWidth(problem.hertz_estimate, member),
         graded_middles=True,
+    )
+
+
+def _below_flank(problem: GearProblem, depths: Floats, module: float) -> SectorResolution:
+    """The resolution of a sector below its flank. depths: (3,) of the thin layers [mm]; module: m_n [mm]."""
+    more, (core, rim) = _neck_elements(float(depths.sum()) / module) - LEAST_NECK, CORE_AND_RIM[problem.is_plane]
+    return SectorResolution(
+        layer_depths=(depths[0], depths[1], depths[2]),
         neck_elements=LEAST_NECK + more,
         fillet_elements=SectorResolution.fillet_elements + more,
         back_elements=SectorResolution.back_elements + more,

@@ -53,8 +53,8 @@ class KeptPositions:
         """Figures of the positions in archived arrays, by the number of the position. Raises ArchiveError where the
         arrays hold others."""
         numbers, figures = arrays.get("numbers", np.zeros(0)), arrays.get("figures", np.zeros(0))
-        counts = (COLUMNS, *range(LINE_COLUMNS, LINE_COLUMNS + figures.shape[-1]))
-        fits = figures.ndim == 3 and numbers.shape == figures.shape[:1] and figures.shape[-1] in counts
+        columns = figures.shape[-1] if figures.ndim == 3 else 0
+        fits = numbers.shape == figures.shape[:1] and (columns == COLUMNS or columns >= LINE_COLUMNS)
         if numbers.dtype.kind != "i" or figures.dtype.kind != "f" or not fits:
             raise ArchiveError(
                 f"{self.store.folder.out / self.name}: wanted numbers of positions with their figures, found other "

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from evolvent.gears.line.line_equilibrium import LineSystem, half_width, line_equilibrium
+from evolvent.contact.hertz import line_half_width
+from evolvent.gears.line.line_equilibrium import LineSystem, line_equilibrium
 
 ONE = LineSystem(
     np.array([[2e-5]]), np.array([1.0]), np.array([0.01]), np.array([5.0]), np.array([math.log(0.5)]),
@@ -43,7 +44,7 @@ def test_every_station_is_in_balance() -> None:
     for force, all_bear in ((5.0, False), (600.0, True)):
         found = line_equilibrium(system, force)
         q = found.load
-        φ = c * q * (0.25 + system.log_width - np.log(half_width(np.maximum(q, 1e-12), system.radius, 115e3)))
+        φ = c * q * (0.25 + system.log_width - np.log(line_half_width(np.maximum(q, 1e-12), system.radius, 115e3)))
         left = system.B @ q + system.length * (φ + system.gap) - system.H * found.approach
         assert np.abs(left[q > 0.0]).max() < 1e-9 * float(np.abs(system.H * found.approach).max())
         assert (left[q == 0.0] > 0.0).all()
@@ -74,7 +75,7 @@ def test_the_width_that_carries_the_load_cancels() -> None:
 def test_wide_contact_stays_monotone() -> None:
     """Problem: a contact wider than w, where φ would fall with the load. Exact: beyond 0.75 w the half-width is taken
     as that, so that φ(q) = (2/πE*) q (¼ + ln(1/0.75))."""
-    force = 0.9 * brentq(lambda q: float(half_width(np.array(q), np.array(5.0), 115e3)) - 1.0, 1.0, 1e6)
+    force = 0.9 * brentq(lambda q: float(line_half_width(q, 5.0, 115e3)) - 1.0, 1.0, 1e6)
     q, c = force / 0.9, 2.0 / (math.pi * 115e3)
     expected = (2e-5 * q + c * q * (0.25 - math.log(0.75)) + 0.01) / 0.9
     assert line_equilibrium(ONE, force).approach == pytest.approx(expected, rel=1e-9)

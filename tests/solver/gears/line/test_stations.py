@@ -52,7 +52,7 @@ def test_ends_of_the_path_are_stations(angle: float) -> None:
 
 
 def test_a_tooth_pair_has_one_station_in_the_plane() -> None:
-    """Those in contact, and those within reach of the path of contact; ℓ = 1."""
+    """Tooth pairs in contact and within reach of the path of contact have a station of length 1."""
     stations = stations_at(SPUR, 0.0, None)
     assert set(SPUR.teeth_in_contact(0.0)) <= set(stations.tooth.tolist())
     assert len(set(stations.tooth.tolist())) == len(stations.tooth)

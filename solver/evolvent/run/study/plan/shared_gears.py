@@ -18,6 +18,7 @@ from evolvent.gears.shared_gears import shared_gears_name
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
 from evolvent.run.strength.pitch_roots import root_meshes, root_refinement
 from evolvent.scene.gear_problem import gear_problem, shares_gears
+from evolvent.scene.line_level import LINE
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
@@ -82,6 +83,6 @@ def _serving(scene: Scene, torques: tuple[float, float]) -> Scene:
     """The scene on meshes for a range of torques [N·m], unless it gives such a range itself or is in line contact, on
     meshes that do not depend on the torque."""
     own = torques == (scene.load.torque_Nm, scene.load.torque_Nm)
-    if own or scene.load.mesh_torques_Nm is not None or scene.mesh.level == "line":
+    if own or scene.load.mesh_torques_Nm is not None or scene.mesh.level == LINE:
         return scene
     return scene.changed("load", mesh_torques_Nm=torques)

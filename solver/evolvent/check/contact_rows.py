@@ -11,11 +11,9 @@ from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.line_level import LINE, RESOLVED_PARTS
 from evolvent.scene.plain_text import fixed
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.bodies import MeshSection
-from evolvent.scene.schema.output import ExactSection
+from evolvent.scene.skips import line_scene
 
 POSITIONS = 60
 """Least number of positions of the pitch: with 20, peak-to-peak values of Yang's pair ripple by 2 %."""
@@ -23,12 +21,6 @@ EDGES = (
     "  Edges of tips bear, which is no line contact: relieve the tips (tip_relief_um), or resolve the contact by\n"
     "  `evolvent run`."
 )
-
-
-def line_scene(scene: Scene) -> Scene:
-    """The scene at level line, whatever its own."""
-    parts = tuple(name for name in scene.exact.parts if name not in RESOLVED_PARTS)
-    return scene.model_copy(update={"mesh": MeshSection(level=LINE), "exact": ExactSection(parts=parts)})
 
 
 def contact_table(scene: Scene) -> str:

@@ -55,7 +55,8 @@ def check(
             _require_new(out, ".png", overwrite)
         typer.echo(overview(loaded))
         if contact:
-            from evolvent.check.contact_rows import contact_table, line_scene
+            from evolvent.check.contact_rows import contact_table
+            from evolvent.scene.skips import line_scene
 
             require_room(line_scene(loaded), "check", False)
             typer.echo(f"\n{contact_table(loaded)}")

@@ -15,7 +15,7 @@ from rich.text import Text
 
 MESHING, CONDENSING, POSITIONS, CYCLES = "meshing", "condensing", "positions", "cycles of wear"
 ERROR_BARS, DEFORMATION, OUTPUT = "error bars", "deformation", "tables and pictures"
-VIBRATION = "vibration"
+VIBRATION, VARIANTS = "vibration", "variants"
 TENTHS = 10
 
 

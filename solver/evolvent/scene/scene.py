@@ -23,6 +23,7 @@ from evolvent.scene.line_level import line_conflict
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
 from evolvent.scene.schema.dependence import without_main_key
+from evolvent.scene.schema.design import DesignSection
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, shown, validation_error
 from evolvent.scene.schema.fatigue import FatigueSection
@@ -67,6 +68,7 @@ class Scene(SceneSection):
     transient: TransientSection | None = None
     strength: StrengthSection | None = None
     fatigue: FatigueSection | None = None
+    design: DesignSection | None = None
     output: OutputSection = OutputSection()
     exact: ExactSection = ExactSection()
 

@@ -14,8 +14,9 @@ from dataclasses import dataclass, replace
 from evolvent.gears.meshing.levelled_meshes import LONGEST, has_long_cells, is_large, is_two_level
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.line_level import LINE
+from evolvent.scene.line_level import LINE, RESOLVED_PARTS
 from evolvent.scene.scene import Scene
+from evolvent.scene.schema.bodies import MeshSection
 from evolvent.scene.schema.output import ExactSection, OutputSection, SkipName
 
 ROUND_OFF = 1e-8
@@ -231,6 +232,14 @@ def with_deflected_flanks(scene: Scene) -> Scene:
         return scene
     exact = ExactSection(parts=(*scene.exact.parts, "deflected-flanks"))
     return scene.model_copy(update={"exact": exact})
+
+
+def line_scene(scene: Scene, *parts: SkipName) -> Scene:
+    """The scene in line contact, whatever its own level. parts: computed in full beside those that the scene names and
+    a line contact has."""
+    own = tuple(name for name in scene.exact.parts if name not in RESOLVED_PARTS)
+    exact = ExactSection(parts=(*own, *(name for name in parts if name not in own)))
+    return scene.model_copy(update={"mesh": MeshSection(level=LINE), "exact": exact})
 
 
 def wanted_output(scene: Scene) -> OutputSection:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.gears.gear_model import GearModel
 from evolvent.gears.line.line_gears import LineGears
 from evolvent.gears.line.line_result import LineResult
 from evolvent_meshes.arrays import Floats
@@ -63,22 +62,22 @@ class LineFigures:
         return LineFigures(self.on_edges[:, :count], self.pressure[:, :count], self.layer_load[:, :count])
 
 
-def line_figures(model: GearModel, torques: Sequence[float], angles: Floats) -> Iterator[Floats]:
+def line_figures(gears: LineGears, torques: Sequence[float], angles: Floats) -> Iterator[Floats]:
     """Figures (m, 6 + l) of positions one after the other, under each torque [N·mm]: those of `figures_of`, then of
     `LineFigures`.
 
     The loads act along the normals of the helicoids, so that the torques of both gears have the ratio of the base radii
     exactly, and no position stores power. Raises NotConverged, TooWide.
     """
-    gears, radius, width = LineGears.of(model), model.base_radius, model.width_factor
-    layers = gears.layers
+    radius, width, layers = gears.base_radius, gears.width_factor, gears.layers
+    ratio = gears.pair.pinion.base_radius / radius
     for angle in angles:
         position = gears.position(float(angle))
         rows = []
         for torque in torques:
             found = LineResult.of(position, torque / radius / width)
-            load, given = found.equilibrium.load, torque / width * model.pair.pinion.base_radius / radius
+            load, given = found.equilibrium.load, torque / width * ratio
             mesh = found.transmission_error, found.equilibrium.stiffness * width, given, 0.0
-            more = found.position.on_edges(load), found.largest_pressure(model.pair)
+            more = found.position.on_edges(load), found.largest_pressure(gears.pair)
             rows.append([*mesh, *more, *found.layer_load(layers)])
         yield np.array(rows)

@@ -19,7 +19,7 @@ from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
-from evolvent.gears.line.line_gears import MOST_ON_EDGES
+from evolvent.gears.line.line_gears import MOST_ON_EDGES, LineGears
 from evolvent.gears.solution.certificates import certify, energy_imbalance, require_balance
 from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
 from evolvent.gears.sweep.parallel_sweep import division
@@ -102,7 +102,10 @@ def solved_figures(
     missing = [i for i in range(len(angles)) if i not in known]
     shares = [missing[part] for part in division(len(missing), comm.size)]
     own = shares[comm.rank]
-    rows = line_figures(model, torques, angles[own]) if model.is_line else _resolved_figures(models, angles[own])
+    if model.is_line:
+        rows = line_figures(LineGears.of(model), torques, angles[own])
+    else:
+        rows = _resolved_figures(models, angles[own])
 
     for k in range(max(map(len, shares))):
         solved_now = together(comm, lambda: {own[k]: next(rows)} if k < len(own) else {})  # noqa: B023  called at once

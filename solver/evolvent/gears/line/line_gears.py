@@ -118,6 +118,17 @@ class LineGears:
         return self.flanks.pair
 
     @property
+    def base_radius(self) -> float:
+        """Base radius of the gear that turns under its torque [mm]."""
+        return self.pair.gears[self.free].base_radius
+
+    @property
+    def width_factor(self) -> float:
+        """Factor from forces and torques of the line contact to those of the gears: the face width [mm] in the plane,
+        else 1."""
+        return self.pair.face_width if self.spacing is None else 1.0
+
+    @property
     def spacing(self) -> float | None:
         """Distance of stations along the face [mm]; None in the plane."""
         if len(self.gears[0].heights) == 1:

@@ -39,7 +39,8 @@ class Filled:
 
 @dataclass(frozen=True)
 class Table(Generic[Row]):
-    """A file of rows: a line each of a CSV file, or an entry each of a JSON list."""
+    """A file of rows: a line each of a CSV file, or an entry each of a JSON list. The entries of a field that is a
+    mapping are columns of the CSV file, by their keys."""
 
     name: str
     """Name of the file; its ending gives the format."""
@@ -53,9 +54,11 @@ class Table(Generic[Row]):
     def write(self, folder: RunFolder, rows: Iterable[Row]) -> None:
         """Writes the file; none where there are no rows. Raises WriteError, FolderError."""
         lines = [asdict(row) for row in rows]  # type: ignore[call-overload]  # a dataclass
-        if lines:
-            is_csv = self.name.endswith(".csv")
-            folder.write_text(self.name, csv_text(lines, self.columns) if is_csv else json_text(lines))
+        if lines and self.name.endswith(".csv"):
+            ordered = [{name: line[name] for name in self.columns} for line in lines]
+            folder.write_text(self.name, csv_text([_spread(line) for line in ordered]))
+        elif lines:
+            folder.write_text(self.name, json_text(lines))
 
     def read(self, folder: Path) -> list[Row]:
         """The rows, numbers of CSV files to nine digits. Raises ArchiveError for a file that is missing, is cut off,
@@ -156,6 +159,12 @@ def json_text(value: object) -> str:
     return json.dumps(without_nan(value), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
 
 
+def _spread(line: Mapping[str, object]) -> dict[str, object]:
+    """A line with the entries of its mappings, each a cell by its key, in their place."""
+    parts = (value if isinstance(value, Mapping) else {name: value} for name, value in line.items())
+    return {name: value for part in parts for name, value in part.items()}
+
+
 def _cell(value: object) -> object:
     """Text of a value in a cell: a number with nine digits, enough for reading and for comparing two runs; behind an
     apostrophe a text that a spreadsheet would compute, or that begins with an apostrophe itself."""
@@ -207,11 +216,21 @@ def _reader(hint: Any) -> Callable[[Any], Any]:
     column, ValueError and TypeError for a value of another type."""
     if is_dataclass(hint):
         readers = {name: _reader(each) for name, each in get_type_hints(hint).items()}
-        return lambda value: hint(**{name: read(value[name]) for name, read in readers.items()})  # type: ignore[operator]
+        spread = [name for name, each in get_type_hints(hint).items() if get_origin(each) is dict]
+
+        def row(value: Any) -> Any:
+            others = {name: cell for name, cell in value.items() if name not in readers}
+            given = {**value, **{name: others for name in spread if name not in value}}
+            return hint(**{name: read(given[name]) for name, read in readers.items()})  # type: ignore[operator]
+
+        return row
     inner, origin = get_args(hint), get_origin(hint)
     if origin is tuple:
         each = _reader(inner[0])
         return lambda value: tuple(map(each, value))
+    if origin is dict:
+        item = _reader(inner[1])
+        return lambda value: {name: item(each) for name, each in value.items()}
     if origin is UnionType:  # of a type and None
         known = _reader(inner[0])
         return lambda value: None if value is None else known(value)

@@ -25,6 +25,7 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.solution.certified_pitch import ON_DEFLECTED, balanced
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.results.archive.archive import COARSE
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.tables.table import Filled
 from evolvent.run.call import Call
@@ -61,17 +62,19 @@ class SolvedExcitation:
         ]
 
 
-def solved_excitation(call: Call, loads: SceneTorques) -> SolvedExcitation:
-    """Excitation under each torque, on both kinds of meshes; each position is stored. Collective.
+def solved_excitation(call: Call, loads: SceneTorques, part: str = "") -> SolvedExcitation:
+    """Excitation under each torque, on both kinds of meshes; each position is stored. Collective. part: of the results,
+    see `Archive`; without one the folder of the call begins with the first position.
 
     Raises MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, ArchiveError, WriteError.
     """
     problem = loads.problem
     angles = np.array(uniform_pitch(problem.pair.pinion.z, loads.scene.sweep.positions).angles)
     unloaded = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
-    whole, timings = timed_pitch(call, loads, angles, OWN)
+    whole, timings = timed_pitch(call, loads, angles, replace(OWN, part=part))
+    coarse_meshes = replace(COMPANION, part=COARSE + part)
     loaded, left_out = in_line_contact(whole, min(loads.problem.torque, loads.torques[-1]))
-    again = call.companion(loads.scene, lambda: loaded_pitch(call, loads, angles, COMPANION))
+    again = call.companion(loads.scene, lambda: loaded_pitch(call, loads, angles, coarse_meshes))
     coarse = None if again.value is None else MeshExcitation(unloaded, again.value.lightest(len(loaded.torques)))
     companion = CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements, again.reason)
     mended = loaded.deflected and not problem.options.deflected_flanks

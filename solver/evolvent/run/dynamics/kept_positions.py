@@ -3,6 +3,7 @@ inertias no contact is solved again.
 
     OUT/results/excitation.npz          on the meshes of the scene
     OUT/results/excitation_coarse.npz   on those of the companion that gives the error bars
+    OUT/results/excitation_PART.npz     of one of several scenes of a computation; excitation_coarse_PART.npz
     OUT/results/excitation*_deflected.npz   the same on deflected flanks, where a pitch does not balance otherwise
 """
 
@@ -16,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from evolvent.dynamics.excitation.loaded_mesh import COLUMNS, LINE_COLUMNS
-from evolvent.results.archive.archive import COARSE, fingerprint
+from evolvent.results.archive.archive import fingerprint
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Arrays, Store
 from evolvent.run.dynamics.scene_torques import SceneTorques
@@ -24,8 +25,6 @@ from evolvent_meshes.arrays import Floats
 
 KEPT = "results/excitation.npz", "results/excitation*.npz"
 """Name of the file that is there first, and pattern of all of them."""
-NAMES = {"": "results/excitation.npz", COARSE: "results/excitation_coarse.npz"}
-"""Name of the file by the part of the results, see `Archive`."""
 DEFLECTED = ".npz", "_deflected.npz"
 """End of the names of these files, and its replacement for positions on deflected flanks."""
 
@@ -70,7 +69,12 @@ class KeptPositions:
 
 def kept_positions(loads: SceneTorques, folder: RunFolder, part: str = "") -> KeptPositions:
     """Positions in a folder. part: of the results, see `Archive`."""
-    return KeptPositions(Store(folder, identity(loads), another), NAMES[part])
+    return KeptPositions(Store(folder, identity(loads), another), file_name(part))
+
+
+def file_name(part: str) -> str:
+    """Name of the file with the positions of a part of the results, see `Archive`."""
+    return "_".join(["results/excitation", *filter(None, part.split("_"))]) + ".npz"
 
 
 def another(path: Path) -> str:

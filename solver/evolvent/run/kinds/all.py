@@ -109,6 +109,18 @@ evolvent transient demos/he2022.toml --out out/transient --level quick --set tra
 --resume""",
     ),
     Kind(
+        "design", "design:Design", """Vary a pair's flank modifications and find the best.
+
+    Reliefs, crownings and slopes as the section [design] says, under each of a list of torques: transmission error,
+    K_Hβ and pressure of all variants in line contact, on gears that are condensed once; the best ones with the contact
+    resolved beside.
+    """, """\
+evolvent design demos/he2022.toml --out out/design --percent 50,100 \\
+--set 'design.vary=[["both.tip_relief_um",0,30,1]]'
+mpirun -n 2 evolvent design demos/yang2022_design.toml --out out/design""",
+        percents=(25.0, 50.0, 75.0, 100.0), in_studies=False,
+    ),
+    Kind(
         "strength", "strength:Strength", """Compute the stress at the roots of a pair's teeth.
 
     By finite elements over the whole engagement of a tooth, on both sides, beside ISO 6336-3 and formulas for chosen

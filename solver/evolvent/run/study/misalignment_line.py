@@ -15,9 +15,10 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.shared_gears import SharedGears
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.results.archive.archive import COARSE
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
-from evolvent.run.dynamics.kept_positions import KEPT, NAMES, KeptPositions, kept_positions
+from evolvent.run.dynamics.kept_positions import KEPT, KeptPositions, kept_positions
 from evolvent.run.study.plan.shared_gears import meshes, own_torque
 from evolvent.run.study.results.scene_record import SceneRecord, read_record
 from evolvent.run.study.scene_task import SceneTask, solve
@@ -52,7 +53,7 @@ def _keep_positions(tasks: Sequence[SceneTask], gears: SharedGears) -> None:
         for task in tasks:
             locks.enter_context(locked(task.folder))
             RunFolder(task.folder).require_free(KEPT)
-        for part, mesh in zip(NAMES, meshes(first, "excitation")):
+        for part, mesh in zip(("", COARSE), meshes(first, "excitation")):
             models = [gears.prepare(each.problem, MPI.COMM_SELF, mesh).model for each in loads]
             kept = [kept_positions(each, RunFolder(task.folder), part) for each, task in zip(loads, tasks)]
             _solve_missing(models, kept, first.sweep.positions)

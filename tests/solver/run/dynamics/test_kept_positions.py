@@ -11,7 +11,7 @@ import pytest
 
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.store import ArchiveError, Store, arrays_bytes
-from evolvent.run.dynamics.kept_positions import NAMES, KeptPositions, another
+from evolvent.run.dynamics.kept_positions import KeptPositions, another, file_name
 from evolvent.run.kinds import dynamics
 from evolvent.run.kinds.dynamics import TABLES, Dynamics
 from evolvent.scene.scene import load_scene
@@ -33,7 +33,7 @@ def archive(**arrays: Any) -> bytes:
 
 def kept(out: Path) -> KeptPositions:
     """Positions of the right gears."""
-    return KeptPositions(Store(RunFolder(out), "gears", another), NAMES[""])
+    return KeptPositions(Store(RunFolder(out), "gears", another), file_name(""))
 
 
 WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 4)))
@@ -41,7 +41,7 @@ WHOLE = archive(numbers=np.arange(2), figures=np.ones((2, 1, 4)))
 
 def test_what_was_written_is_read(tmp_path: Path) -> None:
     """Two positions under one torque."""
-    RunFolder(tmp_path).write(NAMES[""], WHOLE)
+    RunFolder(tmp_path).write(file_name(""), WHOLE)
     found = kept(tmp_path).read()
     assert list(found) == [0, 1] and np.array_equal(found[1], np.ones((1, 4)))
 
@@ -60,7 +60,7 @@ def test_what_was_written_is_read(tmp_path: Path) -> None:
 )
 def test_forged_positions_are_refused(tmp_path: Path, content: bytes) -> None:
     """Archives that are cut off, damaged, no archives, or hold other arrays: an error with the path, nothing else."""
-    RunFolder(tmp_path).write(NAMES[""], content)
+    RunFolder(tmp_path).write(file_name(""), content)
     with pytest.raises(ArchiveError, match=r"excitation\.npz: wanted"):
         kept(tmp_path).read()
 

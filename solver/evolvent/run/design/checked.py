@@ -1,0 +1,170 @@
+"""The best variants of a design: with error bars, beside the resolved contact, and within their tolerances."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from evolvent.dynamics.excitation.line_mesh import LineFigures
+from evolvent.dynamics.results.curves import LOADED, TANGENT, pitch_curves
+from evolvent.dynamics.results.design_load import PRESSURE_OFF
+from evolvent.gears.line.line_gears import MOST_ON_EDGES
+from evolvent.results.archive.run_cost import Timings
+from evolvent.results.tables.table import Table
+from evolvent.run.design.variant_mesh import FACE_LOAD, ON_EDGES, PEAK_TO_PEAK
+from evolvent.run.dynamics.excitation import SolvedExcitation
+from evolvent.scene.schema.design import FIGURES, DesignSection
+from evolvent_meshes.arrays import Floats
+
+
+@dataclass(frozen=True)
+class BestRow:
+    """A line of design_best.csv: the scene as it stands or one of the best variants, under a torque."""
+
+    rank: int
+    """1: the best variant, 2: the next one, ...; 0: the scene as it stands, where it is not one of them."""
+    variant: int
+    """Number of the variant, as in design.csv; 0 is the scene as it stands."""
+    torque_Nm: float
+    """Torque on the gear that load.on names."""
+    transmission_error_peak_to_peak_um: float
+    """Peak-to-peak transmission error in line contact; NaN where edges of tips bear under this torque or a lighter one.
+    """
+    transmission_error_peak_to_peak_um_error: float
+    """Estimated error of it; NaN where it is not known."""
+    tangent_stiffness_mean_N_per_um: float
+    """Mean tangent stiffness of the mesh in line contact."""
+    tangent_stiffness_mean_N_per_um_error: float
+    """Estimated error of it."""
+    face_load_factor: float
+    """Face load factor K_Hβ (ISO 6336-1:2006, 7.2.2); NaN in the plane."""
+    face_load_factor_error: float
+    """Estimated error of it."""
+    largest_pressure_MPa: float
+    """Largest of Hertz' p_0, away from edges of tips and from starts of linear reliefs."""
+    largest_pressure_MPa_error: float
+    """Estimated error of it."""
+    resolved_peak_to_peak_um: float
+    """Peak-to-peak transmission error with the contact resolved; NaN where it was not asked for."""
+    resolved_peak_to_peak_um_error: float
+    """Estimated error of it."""
+    resolved_stiffness_mean_N_per_um: float
+    """Mean tangent stiffness of the mesh with the contact resolved."""
+    resolved_stiffness_mean_N_per_um_error: float
+    """Estimated error of it."""
+    band_lowest_peak_to_peak_um: float
+    """Least peak-to-peak transmission error of variants within the tolerances of the best one; NaN of others."""
+    band_highest_peak_to_peak_um: float
+    """Largest one of them. NaN where edges of tips bear of one of them."""
+    band_lowest_face_load_factor: float
+    """Least K_Hβ of variants within the tolerances of the best one."""
+    band_highest_face_load_factor: float
+    """Largest one of them."""
+
+
+BEST = Table("design_best.csv", BestRow)
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """A variant whose line contact has error bars, and whose contact was resolved where that was asked for."""
+
+    variant: int
+    """Number of the variant."""
+    line: SolvedExcitation | None
+    """Excitation in line contact; None where edges bear under the lightest torque."""
+    resolved: SolvedExcitation | None
+    """Excitation with the contact resolved; None where it was not asked for."""
+    rank: int = 0
+    """1 of the best variant; 0 of the scene as it stands where it is not one of the best."""
+    band: Floats | None = None
+    """(b, m, f) figures of variants within its tolerances; None where it is not the best one."""
+
+    @property
+    def timings(self) -> Timings:
+        """Wall time of all its solutions [s]."""
+        return sum((each.timings for each in (self.line, self.resolved) if each is not None), Timings())
+
+    def largest(self, torques: int) -> float:
+        """Largest peak-to-peak transmission error under all torques [µm], of which there are so many: of the line
+        contact or, where edges bear, of the resolved one; infinite where neither is known."""
+        for solved in (self.line, self.resolved):
+            sizes = [size for size, _ in _figures(solved, torques)["error"]]
+            if np.isfinite(sizes).all():
+                return max(sizes)
+        return math.inf
+
+    def rows(self, torques: Sequence[float]) -> Iterator[BestRow]:
+        """A row for each torque [N·mm], ascending."""
+        line, resolved = (_figures(each, len(torques)) for each in (self.line, self.resolved))
+        for j, torque in enumerate(torques):
+            yield BestRow(
+                self.rank, self.variant, 1e-3 * torque, *line["error"][j], *line["stiffness"][j], *line["face_load"][j],
+                *line["pressure"][j], *resolved["error"][j], *resolved["stiffness"][j], *self._band(j),
+            )
+
+    def _band(self, torque: int) -> tuple[float, float, float, float]:
+        if self.band is None:
+            return math.nan, math.nan, math.nan, math.nan
+        figures = self.band[:, torque]
+        bears = ~(figures[:, ON_EDGES] <= MOST_ON_EDGES).all()
+        if bears:
+            return math.nan, math.nan, math.nan, math.nan
+        found = figures[:, [PEAK_TO_PEAK, FACE_LOAD]]
+        (low, low_factor), (high, high_factor) = found.min(axis=0), found.max(axis=0)
+        return float(low), float(high), float(low_factor), float(high_factor)
+
+
+def ranked(checked: Sequence[Checked], best: Sequence[int], section: DesignSection, torques: int) -> list[Checked]:
+    """Variants with their ranks, the best one first. best: their numbers as line contact has it, which is what counts
+    but for the transmission error where edges bear; the others get no rank and come last. torques: their number."""
+    others = [each for each in checked if each.variant not in best]
+    among = sorted((each for each in checked if each.variant in best), key=lambda each: best.index(each.variant))
+    if section.targets == FIGURES[:1]:
+        among.sort(key=lambda each: each.largest(torques))
+    return [*(replace(each, rank=rank) for rank, each in enumerate(among, 1)), *others]
+
+
+Pairs = list[tuple[float, float]]
+
+
+def _figures(solved: SolvedExcitation | None, count: int) -> Mapping[str, Pairs]:
+    """Figures with their errors under `count` torques, of which the heaviest ones may have none."""
+    unknown: Pairs = [(math.nan, math.nan)] * count
+    if solved is None:
+        return dict.fromkeys(("error", "stiffness", "face_load", "pressure"), unknown)
+    curves = list(pitch_curves(solved.excitation, solved.companion))
+    found = {
+        "error": [(float(np.ptp(each[LOADED].values)), each[LOADED].peak_to_peak_error) for each in curves],
+        "stiffness": [(float(np.mean(each[TANGENT].values)), each[TANGENT].mean_error) for each in curves],
+        "face_load": _face_load(solved), "pressure": _pressure(solved),
+    }
+    return {name: [*pairs, *unknown[len(pairs) :]] for name, pairs in found.items()}
+
+
+def _face_load(solved: SolvedExcitation) -> Pairs:
+    """K_Hβ in line contact, with its errors; none in the plane and where the contact is resolved."""
+    line, coarse = solved.excitation.loaded.line, _coarse(solved)
+    if line is None or line.is_plane:
+        return []
+    errors = np.full(len(line.face_load_factor), np.nan) if coarse is None else line.face_load_error(coarse)
+    return list(zip(map(float, line.face_load_factor), map(float, errors)))
+
+
+def _coarse(solved: SolvedExcitation) -> LineFigures | None:
+    """Further figures of the coarse companion's line contact."""
+    coarse = solved.companion.excitation
+    return None if coarse is None else coarse.loaded.line
+
+
+def _pressure(solved: SolvedExcitation) -> Pairs:
+    """Largest p_0 in line contact, with its errors; none where the contact is resolved."""
+    line, coarse = solved.excitation.loaded.line, _coarse(solved)
+    if line is None:
+        return []
+    own = line.largest_pressure_MPa
+    other = np.full(len(own), np.nan) if coarse is None else coarse.largest_pressure_MPa
+    return list(zip(map(float, own), map(float, np.abs(own - other) + PRESSURE_OFF * own)))

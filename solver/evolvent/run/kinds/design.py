@@ -1,0 +1,184 @@
+"""Flank modifications of a scene that vary: a search in line contact, the best variants with the contact resolved."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cache, cached_property, partial
+from typing import ClassVar, Self
+
+import numpy as np
+
+from evolvent.dynamics.excitation.loaded_mesh import EdgeContact
+from evolvent.dynamics.of_scene import check_positions
+from evolvent.gears.shared_gears import SharedGears
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.results.archive.run_cost import Timings
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.drawing.table_pictures import TablePicture
+from evolvent.results.tables.table import SCENE_TITLE, Filled
+from evolvent.run.call import Call
+from evolvent.run.computation import Computation, Outputs, Results
+from evolvent.run.design.checked import BEST, Checked, ranked
+from evolvent.run.design.design_lines import BEST_SCENE, design_lines, design_warnings
+from evolvent.run.design.design_space import DesignSpace
+from evolvent.run.design.evaluation import KEPT, Evaluation, Variants, design_store, kept_variants, no_variants
+from evolvent.run.design.ranking import Ranking
+from evolvent.run.design.search import search
+from evolvent.run.design.tables import DESIGN, variant_rows
+from evolvent.run.design.variant_mesh import VariantMesh
+from evolvent.run.dynamics.excitation import solved_excitation
+from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
+from evolvent.scene.line_level import LINE
+from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.design import DesignSection, expanded
+from evolvent.scene.schema.errors import NOTHING, InputProblem, SceneError
+from evolvent.scene.schema.output import SkipName
+from evolvent.scene.skips import line_scene
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.modifications.modifications import OVER_FACE
+
+PLANE: tuple[SkipName, ...] = ("plane",)
+"""Part that is computed in full where variants differ over the face."""
+PICTURE = TablePicture("design.png", (SCENE_TITLE, DESIGN, BEST), "evolvent.run.design.figures:design_figure")
+
+
+@dataclass(frozen=True)
+class SolvedDesign:
+    """Variants of a scene, and the best of them."""
+
+    variants: Variants
+    """All that were computed."""
+    checked: tuple[Checked, ...]
+    """The best variants, the best one first, and the scene as it stands."""
+
+    @property
+    def best(self) -> Checked | None:
+        """The best variant; None where none is allowed."""
+        return self.checked[0] if self.checked[0].rank else None
+
+
+@dataclass(frozen=True)
+class Design(Computation[SolvedDesign]):
+    """Variants of a scene's flank modifications under each of a list of torques."""
+
+    loads: SceneTorques
+    """The scene under its torques."""
+    name: ClassVar[str] = "design"
+    command: ClassVar[str] = "design"
+    in_line_contact: ClassVar[bool] = True
+    outputs: ClassVar[Outputs] = Outputs(
+        (DESIGN.name, BEST.name), (PICTURE,), (BEST_SCENE,), (KEPT, "results/excitation_*.npz"), design_lines
+    )
+
+    @classmethod
+    def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
+        """Variants of a scene under parts of its torque. Raises SceneError where one of them is refused."""
+        listed = listed_percents(scene, percents)
+        loads = scene_torques(with_percents(scene, listed), listed)
+        return cls(loads.scene, loads)
+
+    @property
+    def section(self) -> DesignSection:
+        """The section [design]. Raises SceneError where the scene has none."""
+        if self.scene.design is None:
+            found, remedy = NOTHING, 'write for example design.vary = [["both.tip_relief_um", 0.0, 60.0, 5.0]]'
+            raise SceneError([InputProblem("design", found, "a section with what varies", remedy)])
+        return self.scene.design
+
+    @cached_property
+    def on_lines(self) -> Scene:
+        """The scene in line contact under its lightest torque; in space where a key varies over the face."""
+        names = [*expanded(self.section.vary), *expanded(self.section.tolerances)]
+        over_face = any(name.partition(".")[2] in (*OVER_FACE, "misalignment_um") for name in names)
+        lightest = under_torque(self.scene, 1e-3 * self.loads.torques[0])
+        return line_scene(lightest, *(PLANE if over_face else ()))
+
+    @property
+    def space(self) -> DesignSpace:
+        """The variants."""
+        return DesignSpace(self.on_lines, self.section)
+
+    @property
+    def sized(self) -> list[Scene]:
+        """Scenes whose memory is looked at: in line contact and, where that is verified, with the contact resolved."""
+        return [self.on_lines, *([self.scene] if self._verified else [])]
+
+    @property
+    def heaviest(self) -> Scene:
+        """The scene under the largest torque."""
+        return self.loads.heaviest
+
+    @property
+    def _verified(self) -> int:
+        """Number of the best variants whose contact is resolved."""
+        return 0 if self.scene.mesh.level == LINE else self.section.verified
+
+    def check(self) -> None:
+        """Raises SceneError without a section [design], and for a number of positions without harmonics."""
+        assert self.section
+        check_positions(self.scene)
+
+    def solve(self, call: Call) -> SolvedDesign:
+        """Searches variants, then checks the best, see `Computation.solve`."""
+        space, store = self.space, design_store(call, self.space, self.loads.torques)
+        size = len(space.keys), len(self.loads.torques)
+        known = call.on_first(lambda: kept_variants(store, *size)) if call.resume else no_variants(*size)
+        gears = SharedGears([self._on_lines(space.as_it_stands).problem])
+        with call.beginning(self.scene, gears.prepare) as prepare:
+            shared = call.preparing(prepare)
+            evaluation = Evaluation(call, store, cache(lambda: self._mesh(shared)), known)
+            evaluation.of(space.as_it_stands[None])
+            search(space, evaluation, bool(self._verified))
+            found = evaluation.asked
+            best = Ranking(self.section, found.figures, bool(self._verified)).checked
+            checked = [self._checked(call, shared, n, found.values[n]) for n in dict.fromkeys([0, *best])]
+            first, *others = ranked(checked, best, self.section, size[1])
+            if first.rank:
+                deviating = evaluation.of(space.deviating(found.values[first.variant]))
+                first = replace(first, band=deviating.figures)
+        return SolvedDesign(found, (first, *others))
+
+    def results(self, call: Call, solved: SolvedDesign) -> Results:
+        """Tables of all variants and of the best ones, and the scene with the best one."""
+        torques, space = self.loads.torques, self.space
+        best = [row for each in solved.checked for row in each.rows(torques)]
+        tables = [DESIGN.of(variant_rows(self.section, space.keys, solved.variants)), BEST.of(best)]
+        if solved.best is not None:
+            chosen = replace(space, scene=self.scene).scene_of(solved.variants.values[solved.best.variant])
+            text = chosen.model_copy(update={"design": None}).resolved_toml()
+            tables.append(Filled(BEST_SCENE, partial(_write_scene, text)))
+        said = design_warnings(space, solved.variants, solved.checked, solved.best)
+        return Results(self.scene, tables, [*said], timings=sum((each.timings for each in solved.checked), Timings()))
+
+    def _on_lines(self, variant: Floats) -> SceneTorques:
+        """A variant (k,) in line contact under all torques."""
+        return SceneTorques(self.space.scene_of(variant), self.loads.torques)
+
+    def _resolved(self, variant: Floats) -> SceneTorques:
+        """A variant (k,) at the level of the scene under all torques."""
+        return replace(self.loads, scene=replace(self.space, scene=self.loads.scene).scene_of(variant))
+
+    def _mesh(self, call: Call) -> VariantMesh:
+        """The condensed gears for all variants. Collective."""
+        space, loads = self.space, self._on_lines(self.space.as_it_stands)
+        angles = np.array(uniform_pitch(loads.problem.pair.pinion.z, self.scene.sweep.positions).angles)
+        model = call.gears(loads.problem).model
+        return VariantMesh.of(model, lambda variant: space.scene_of(variant).gear_pair(), loads.torques, angles)
+
+    def _checked(self, call: Call, shared: Call, number: int, variant: Floats) -> Checked:
+        """A variant (k,) with its error bars and, where that is asked for, with the contact resolved. Collective.
+        shared: call with the gears in line contact."""
+        line, resolved = None, None
+        with contextlib.suppress(EdgeContact):
+            line = solved_excitation(shared, self._on_lines(variant), f"line_{number}_")
+        if self._verified:
+            resolved = solved_excitation(call, self._resolved(variant), f"resolved_{number}_")
+        return Checked(number, line, resolved)
+
+
+def _write_scene(text: str, folder: RunFolder) -> None:
+    """Writes the scene with the best variant."""
+    folder.write_text(BEST_SCENE, text)

@@ -29,6 +29,8 @@ from evolvent.results.tables.field_texts import field_texts
 from evolvent.results.tables.load_table import ERROR, LOADS
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
 from evolvent.results.tables.table import Record, Table
+from evolvent.run.design.checked import BEST
+from evolvent.run.design.tables import DESIGN
 from evolvent.run.kinds.losses import LOSSES
 from evolvent.run.study.results.check_figures import CHECK
 from evolvent.run.study.results.scene_record import RECORD
@@ -72,6 +74,9 @@ FILES = (
     ("load_*", "`evolvent loads`: the run under one torque, a folder with all of the above"),
     ("loads.csv", "`evolvent loads`: one line per load and friction coefficient"),
     ("losses.csv", "`evolvent losses`: one line per torque and friction coefficient"),
+    ("design.csv", "`evolvent design`: one line per variant, [flank_design.md](flank_design.md)"),
+    ("design_best.csv", "likewise: one line per torque of the best variants and of the scene as it stands"),
+    ("best.toml", "likewise: the scene with the best variant"),
     ("excitation.csv", "excitation under each torque: `evolvent excitation`, `dynamics`, `run` at an operating speed"),
     ("excitation.json", "`evolvent excitation` and `dynamics`: what it is of, and the load that a relief fits"),
     ("harmonics.csv", "likewise: a line per quantity, torque and mesh harmonic"),
@@ -143,6 +148,8 @@ SECTIONS: tuple[tuple[str, type, str] | tuple[Table[Any] | Record[Any], str], ..
     ("`positions`, each entry; the columns of `positions.csv`", PositionRow, ""),
     ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),
     (LOADS, "Of `evolvent loads`."),
+    (DESIGN, "Of `evolvent design`, in the order of computation."),
+    (BEST, "Of `evolvent design`; the best variant first."),
     (LOSSES, "Of `evolvent losses`; the lightest torque first."),
     (EXCITATION, "Without friction; the lightest torque first."),
     (EXCITATION_FACTS, ""),

@@ -172,10 +172,16 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics.oscillator", "dynamics", "dynamics.modes", "dynamics.transient", "dynamics.results.transient",
         "check", "run",
     ),
+    "run.design": (
+        "meshes", "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact.newton", "gears",
+        "gears.line", "gears.sweep", "scene", "scene.schema", "results.archive", "results.tables", "results.drawing",
+        "dynamics.excitation", "dynamics.results", "run", "run.dynamics",
+    ),
     "run.kinds": (
-        "meshes.mesh", "meshes.gears", "fem.parallel", "gears", "gears.pressure", "gears.problem", "gears.solution",
-        "scene", "scene.schema", "results.*", "check", "dynamics.*", "strength.*", "wear.results", "run",
-        "run.strength", "run.dynamics", "run.dynamics.transient",
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears",
+        "gears.pressure", "gears.problem", "gears.solution", "gears.sweep", "scene", "scene.schema", "results.*",
+        "check", "dynamics.*", "strength.*", "wear.results", "run", "run.strength", "run.dynamics",
+        "run.dynamics.transient", "run.design",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

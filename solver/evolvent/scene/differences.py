@@ -18,18 +18,18 @@ PERCENTS = "load.percents"
 
 
 def essence(scene: Scene) -> Scene:
-    """The scene without the parts that its results do not depend on: title, output, the paths of flank charts, and the
-    other torques of a list."""
+    """The scene without the parts that its results do not depend on: title, output, the paths of flank charts, the
+    other torques of a list, and variants of its flanks."""
     exact = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in OF_OUTPUT))
     bare = scene.changed("load", percents=()).changed("pinion", flank_csv=None).changed("wheel", flank_csv=None)
-    return bare.model_copy(update={"title": "", "output": OutputSection(), "exact": exact})
+    return bare.model_copy(update={"title": "", "design": None, "output": OutputSection(), "exact": exact})
 
 
 def identity(scene: Scene) -> list[Any]:
     """All that the results of a scene depend on, as JSON has it: its values, those derived from them, and its flank
     charts. Keys have their first names, so that it is the same in all versions."""
     bare = essence(scene)
-    values = bare.model_dump(mode="json", exclude={"load": {"percents"}})  # which first versions did not have
+    values = bare.model_dump(mode="json", exclude={"load": {"percents"}, "design": True})  # first versions had neither
     return [first_names(values), derived_values(bare), *charts(scene)]
 
 

@@ -17,6 +17,7 @@ CHART = "diameter_mm,z_mm,depth_um\n140,-8,1\n140,8,1\n156,-8,1\n156,8,1\n"
 SAID = "pinion.flank_csv, lead.csv: heights z = -8 to 8 mm cover 80 % of the face"
 SETTINGS = (
     "mesh.order=1", "sweep.positions=3", "transient.speeds_rpm=[1000]", "dynamics.backlash_um=50",
+    'design.vary=[["both.tip_relief_um",10.0,20.0,10.0]]',
     "dynamics.speed_rpm=[1000,1100]", "dynamics.speeds=2", "dynamics.torque_percents=[50,100,150]", *QUIET,
 )
 PERCENT = {"loads": "100", "excitation": "50,100"}

@@ -22,7 +22,7 @@ CHEAP = (
 """Settings that stand behind those of a line: what it computes takes seconds then."""
 FEW = ("sweep.positions=6", *PLAIN)
 FEWER = {
-    "run": CHEAP, "loads": CHEAP, "losses": FEW, "excitation": FEW, "strength": FEW,
+    "run": CHEAP, "loads": CHEAP, "losses": FEW, "excitation": FEW, "strength": FEW, "design": FEW,
     "transient": FEW, "fatigue": CHEAP, "study": (*FEW, "mesh.level=quick"),
     "dynamics": (*FEW, "dynamics.speeds=20", "dynamics.torque_percents=[50,100,200]", "dynamics.mesh=\"tangent\""),
 }

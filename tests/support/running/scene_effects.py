@@ -12,6 +12,8 @@ from evolvent.check.check_report import overview
 from evolvent.dynamics.of_scene import drive_settings, operating_point
 from evolvent.gears.problem.gear_inertia import equivalent_mass
 from evolvent.gears.problem.iso_dynamic_factor import method_b
+from evolvent.run.design.design_space import DesignSpace
+from evolvent.run.design.ranking import Ranking
 from evolvent.run.dynamics.speeds import map_list, sweep_list
 from evolvent.run.dynamics.vibration import accuracy
 from evolvent.scene.gear_problem import gear_problem
@@ -48,6 +50,8 @@ angle_deg = [30.0]
 height_mm = [0.0]
 length_mm = [1.0]
 [fatigue]
+[design]
+vary = [["both.tip_relief_um", 5.0, 25.0, 5.0]]
 """
 """A scene with every section, in which no key is given that need not be, but for a cheap mesh."""
 OF_GEARS = {
@@ -98,6 +102,9 @@ OTHERS = {
     "fatigue.tension_factor": "0.5", "fatigue.compression_factor": "0.2", "fatigue.normal_factor": "0.5",
     "fatigue.exponents": "[9.0]", "output.pictures": "false", "output.animation": "false", "output.fields": "false",
     "output.deformation": "true", "output.error_bars": "false",
+    "design.vary": '[["pinion.tip_relief_um", 5.0, 25.0, 5.0]]', "design.targets": '["face_load_factor"]',
+    "design.limits": '[["face_load_factor", 1.5]]', "design.search": '"sobol"', "design.samples": "3",
+    "design.tolerances": '[["wheel.tip_relief_um", 2.0]]', "design.verified": "2",
     "exact.parts": '["plane"]',
 }
 CHARTS = {"pinion.csv": "diameter_mm,depth_um\n50,3\n70,5\n", "wheel.csv": "diameter_mm,depth_um\n110,3\n130,5\n"}
@@ -174,6 +181,20 @@ def _fatigue(scene: Scene) -> object:
     return section.depths, section.exponents, {each.name: value.tolist() for each, value in found.values.items()}
 
 
+def _design(scene: Scene) -> object:
+    """Variants that a search begins with, how they are judged, and those within the tolerances."""
+    section = scene.design
+    assert section is not None
+    space = DesignSpace(scene, section)
+    figures = np.array([[[1.0, 1.6, 900.0, 0.0]], [[2.0, 1.2, 950.0, 0.0]]])
+    ranking = Ranking(section, figures)
+    everything = section.search, section.samples, section.verified
+    return (
+        everything, space.keys, space.variants(space.lattice()).tolist(), space.deviating(space.as_it_stands).tolist(),
+        ranking.best(1).tolist(), ranking.is_allowed.tolist(),
+    )
+
+
 def _output(scene: Scene) -> object:
     return wanted_output(scene)
 
@@ -183,7 +204,9 @@ def _torques(scene: Scene) -> object:
     return listed_percents(scene)
 
 
-CONSEQUENCES: tuple[Callable[[Scene], object], ...] = _gears, _output, _torques, _fatigue, _vibration, overview, _roots
+CONSEQUENCES: tuple[Callable[[Scene], object], ...] = (
+    _gears, _output, _torques, _design, _fatigue, _vibration, overview, _roots,
+)
 """What follows from a scene, the cheap ones first."""
 
 

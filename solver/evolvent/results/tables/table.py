@@ -219,8 +219,9 @@ def _reader(hint: Any) -> Callable[[Any], Any]:
         spread = [name for name, each in get_type_hints(hint).items() if get_origin(each) is dict]
 
         def row(value: Any) -> Any:
-            others = {name: cell for name, cell in value.items() if name not in readers}
-            given = {**value, **{name: others for name in spread if name not in value}}
+            mappings = [name for name in spread if name not in value]
+            others = {name: cell for name, cell in value.items() if name not in readers} if mappings else {}
+            given = {**value, **dict.fromkeys(mappings, others)} if mappings else value
             return hint(**{name: read(given[name]) for name, read in readers.items()})  # type: ignore[operator]
 
         return row

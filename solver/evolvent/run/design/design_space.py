@@ -32,7 +32,7 @@ class DesignSpace:
     scene: Scene
     """Scene whose modifications vary."""
     section: DesignSection
-    """Its section [design]."""
+    """Section [design] of the scene."""
 
     @property
     def keys(self) -> tuple[str, ...]:

@@ -46,7 +46,7 @@ class Variants:
         return Variants(values, self.figures[own], tuple(self.reasons[number] for number in own))
 
     def and_(self, more: Variants) -> Variants:
-        """These and more."""
+        """All of these, then more."""
         return Variants(
             np.concatenate([self.values, more.values]), np.concatenate([self.figures, more.figures]),
             (*self.reasons, *more.reasons),
@@ -105,8 +105,8 @@ def no_variants(keys: int, torques: int) -> Variants:
 
 
 def kept_variants(store: Store, keys: int, torques: int) -> Variants:
-    """Variants that an earlier call has stored. On rank 0 alone. keys, torques: their numbers. Raises ArchiveError where
-    they are those of another scene."""
+    """Variants that an earlier call has stored. On rank 0 alone. keys, torques: their numbers. Raises ArchiveError
+    where they are those of another scene."""
     path = store.folder.out / KEPT
 
     def decoded(arrays: Arrays) -> Variants:

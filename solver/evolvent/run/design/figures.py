@@ -10,9 +10,9 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.labels import UNITS, ending, label
-from evolvent.results.drawing.style import FAINT, INK, PINION, PRESSURE_MAP, WHEEL, foot, sheet
+from evolvent.results.drawing.style import FAINT, HOLLOW, INK, PINION, PRESSURE_MAP, WHEEL, foot, sheet
 from evolvent.run.design.checked import BestRow
-from evolvent.run.design.tables import ALLOWED, FRONT, VariantRow
+from evolvent.run.design.tables import ALLOWED, EDGES, FRONT, VariantRow
 from evolvent_meshes.arrays import Floats
 
 BEFORE, AFTER = WHEEL, PINION
@@ -30,7 +30,7 @@ def design_figure(title: str, variants: Sequence[VariantRow], best: Sequence[Bes
     left, right = figure.subplots(1, 2)
     _over_torque(left, before, first)
     if len(names) == 1:
-        _curve(right, variants, names[0], first)
+        _curve(right, variants, names[0], best)
     elif len(names) == 2 and (grid := lattice(variants, names)) is not None:
         _map(figure, right, variants, names, grid, first)
     else:
@@ -86,7 +86,7 @@ def _over_torque(axes: Axes, before: Sequence[BestRow], after: Sequence[BestRow]
             continue
         torques = [row.torque_Nm for row in rows]
         for part, marker, style, words in (
-            ("transmission_error", "o", "-", ""), ("resolved", "s", "", ", contact resolved"),
+            ("transmission_error", "o", "-", ""), ("resolved", "s", ":", ", contact resolved"),
         ):
             values = np.array([getattr(row, f"{part}_peak_to_peak_um") for row in rows])
             if not np.isfinite(values).any():
@@ -118,10 +118,17 @@ def _curve(axes: Axes, variants: Sequence[VariantRow], name: str, best: Sequence
     own = variants[1:]
     order = np.argsort(_values(own, name))
     allowed, beyond = _target(own)
-    axes.plot(_values(own, name)[order], allowed[order], color=INK, marker=".", lw=1.4)
+    axes.plot(_values(own, name)[order], allowed[order], color=INK, marker=".", lw=1.4, label="line contact")
     axes.plot(_values(own, name)[order], beyond[order], color=FAINT, marker=".", lw=0.0)
-    _mark(axes, [(variants[row.variant].values[name], _largest(best)) for row in best[:1]])
+    bears = [row.values[name] for row in own if row.status == EDGES]
+    axes.plot(bears, np.zeros(len(bears)), color=FAINT, marker="|", lw=0.0, clip_on=False, label="edges of tips bear")
+    groups = [[row for row in best if row.rank == rank] for rank in range(1, 1 + max(row.rank for row in best))]
+    found = [(variants[rows[0].variant].values[name], _largest(rows, "resolved")) for rows in groups]
+    if np.isfinite(found).any():
+        axes.plot(*np.transpose(found), label="contact resolved", **{**HOLLOW, "marker": "s"}, color=AFTER)
+    _mark(axes, [(variants[rows[0].variant].values[name], _largest(rows)) for rows in groups[:1]])
     axes.set_ylim(bottom=0.0)
+    axes.legend(loc="best")
     axes.set_xlabel(_axis_label(variants, name))
     axes.set_ylabel(WORST)
 
@@ -171,10 +178,11 @@ def _scatter(axes: Axes, variants: Sequence[VariantRow], best: Sequence[BestRow]
     axes.set_ylabel("largest p_0 [MPa]")
 
 
-def _largest(best: Sequence[BestRow]) -> float:
-    """Largest peak-to-peak transmission error of the best variant; of the resolved contact where edges bear."""
-    line = [row.transmission_error_peak_to_peak_um for row in best]
-    return max(line if np.isfinite(line).all() else [row.resolved_peak_to_peak_um for row in best])
+def _largest(rows: Sequence[BestRow], kind: str = "transmission_error") -> float:
+    """Largest peak-to-peak transmission error of a variant under all torques; of the resolved contact where edges bear,
+    and by kind = "resolved"."""
+    values = [getattr(row, f"{kind}_peak_to_peak_um") for row in rows]
+    return float(max(values if np.isfinite(values).all() else [row.resolved_peak_to_peak_um for row in rows]))
 
 
 def _mark(axes: Axes, places: Sequence[tuple[float, ...]]) -> None:

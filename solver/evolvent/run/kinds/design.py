@@ -136,7 +136,7 @@ class Design(Computation[SolvedDesign]):
             best = Ranking(self.section, found.figures, bool(self._verified)).checked
             checked = [self._checked(call, shared, n, found.values[n]) for n in dict.fromkeys([0, *best])]
             first, *others = ranked(checked, best, self.section, size[1])
-            if first.rank:
+            if first.rank and self.section.tolerances:
                 deviating = evaluation.of(space.deviating(found.values[first.variant]))
                 first = replace(first, band=deviating.figures)
         return SolvedDesign(found, (first, *others))

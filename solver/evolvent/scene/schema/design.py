@@ -85,7 +85,8 @@ class DesignSection(SceneSection):
     targets: Annotated[tuple[Figure, ...], BeforeValidator(listed)] = key(
         "figures that are to be small, each by its largest value under all torques; the best variant has the smallest "
         "first one, of several those variants are marked that no other one beats in all",
-        f"a list of {', '.join(FIGURES)}", default=FIGURES[:1], min_length=1, max_length=len(FIGURES),
+        f"a list of 1 to {len(FIGURES)} of {', '.join(FIGURES)}", default=FIGURES[:1], min_length=1,
+        max_length=len(FIGURES),
     )
     limits: Annotated[tuple[Limit, ...], rows(Limit)] = key(
         "largest values of figures, under every torque: rows of figure and value",
@@ -103,8 +104,8 @@ class DesignSection(SceneSection):
     tolerances: Annotated[tuple[Tolerance, ...], rows(Tolerance)] = key(
         f"deviations in production, for the band of the best variant: rows of key and amount to either side; also "
         f"{MISALIGNMENT}",
-        "a list of rows [key, amount]", 'write for example tolerances = [["both.tip_relief_um", 5.0]]', default=(),
-        max_length=MOST_VARIABLES,
+        f"a list of up to {MOST_VARIABLES} rows [key, amount]",
+        'write for example tolerances = [["both.tip_relief_um", 5.0]]', default=(), max_length=MOST_VARIABLES,
     )
     verified: int = key(
         "number of the best variants whose contact is resolved, at the level of the scene, and that of the scene as it "

@@ -187,7 +187,7 @@ def test_pitch_out_of_balance_is_an_error(kind: Kind, tmp_path: Path, monkeypatc
 
 
 def test_command_line_and_studies_know_it(kind: Kind) -> None:
-    """Command line and studies name each computation; a load list is itself one of several scenes."""
+    """Command line and studies name each computation; a load list and a design are themselves of several scenes."""
     assert kind.command in {command.name for command in COMMANDS}
-    assert (kind.name in COMPUTATIONS) == (kind.name != "loads")
+    assert (kind.name in COMPUTATIONS) == (kind.name not in ("loads", "design"))
     assert kind.load().name == kind.name and kind.load().command == kind.command

@@ -1,0 +1,67 @@
+"""Targets, limits, edges and front of made-up figures."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.run.design.ranking import Ranking
+from evolvent.scene.schema.design import DesignSection, Vary
+from evolvent_meshes.arrays import Floats
+
+ERROR, FACTOR, PRESSURE = "transmission_error_peak_to_peak_um", "face_load_factor", "largest_pressure_MPa"
+VARY = (Vary("both.tip_relief_um", 0.0, 10.0, 1.0),)
+
+
+def section(**given: object) -> DesignSection:
+    return DesignSection.model_validate({"vary": [list(row) for row in VARY], **given})
+
+
+def figures(*rows: tuple[float, float, float, float]) -> Floats:
+    """Figures under one torque."""
+    return np.array(rows)[:, None]
+
+
+def test_the_largest_value_of_all_torques_counts() -> None:
+    """1 and 3 µm under two torques are worse than 2 and 2."""
+    found = np.array([[[1.0, 1.0, 900.0, 0.0], [3.0, 1.0, 900.0, 0.0]], [[2.0, 1.0, 900.0, 0.0]] * 2])
+    ranking = Ranking(section(), found)
+    assert ranking.largest(ERROR).tolist() == [3.0, 2.0] and ranking.best(1).tolist() == [1]
+
+
+def test_limits_leave_out() -> None:
+    """The smallest error has a factor of 1.5, the next one 1.3 of 1.4 allowed."""
+    ranking = Ranking(
+        section(limits=[[FACTOR, 1.4]]), figures((1.0, 1.5, 900.0, 0.0), (2.0, 1.3, 900.0, 0.0), (3.0, 1.1, 900.0, 0.0))
+    )
+    assert ranking.is_allowed.tolist() == [False, True, True] and ranking.best(9).tolist() == [1, 2]
+    costs = ranking.cost(ERROR)
+    assert costs[0] > 1e6 and costs[1:].tolist() == [2.0, 3.0]
+
+
+def test_costs_lead_back_to_what_is_allowed() -> None:
+    """The more a limit is exceeded, the more load on edges, the higher the cost; worst is a variant without figures."""
+    nothing = (np.nan, np.nan, np.nan, np.nan)
+    ranking = Ranking(section(limits=[[FACTOR, 1.4]]), figures(
+        (9.0, 1.0, 900.0, 0.0), (1.0, 1.5, 900.0, 0.0), (1.0, 9.0, 900.0, 0.0), (1.0, 1.0, 900.0, 0.02),
+        (1.0, 1.0, 900.0, 0.5), nothing,
+    ))
+    costs = ranking.cost(ERROR)
+    assert np.isfinite(costs).all() and (np.diff(costs) > 0.0).all()
+
+
+def test_edges_compete_where_their_contact_is_resolved() -> None:
+    """5 % of the load on edges: no line contact; a candidate where the transmission error alone is asked for and the
+    contact will be resolved; with 20 % never."""
+    rows = figures((1.0, 1.0, 900.0, 0.2), (2.0, 1.0, 900.0, 0.05), (3.0, 1.0, 900.0, 0.0))
+    assert Ranking(section(), rows).checked == [2]
+    assert Ranking(section(), rows, True).checked == [1, 2]
+    assert Ranking(section(targets=[FACTOR]), rows, True).checked == [2]
+    assert Ranking(section(limits=[[PRESSURE, 1e3]]), rows, True).checked == [2]
+
+
+def test_front_of_two_targets() -> None:
+    """(1, 3), (2, 2), (3, 1) are not beaten; (3, 3) is, by (2, 2); of two alike neither beats the other."""
+    rows = [(1.0, 3.0), (2.0, 2.0), (3.0, 1.0), (3.0, 3.0), (2.0, 2.0)]
+    ranking = Ranking(section(targets=[ERROR, FACTOR]), figures(*((a, b, 900.0, 0.0) for a, b in rows)))
+    assert ranking.front.tolist() == [True, True, True, False, True]
+    assert ranking.best(2).tolist() == [0, 2]

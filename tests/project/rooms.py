@@ -61,7 +61,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.pressure",
     ),
     "gears.solution": (
-        "meshes", "fem.backend", "contact.problem", "gears.problem", "gears", "gears.sweep",
+        "meshes", "meshes.gears", "fem.backend", "contact.problem", "gears.problem", "gears.meshing", "gears",
+        "gears.sweep",
     ),
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "meshes.gears.modifications", "scene.schema.guesses"),

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from evolvent.gears.problem.gear_problem import MeshSettings as MeshSettings
     from evolvent.gears.problem.hertz_estimate import HertzEstimate as HertzEstimate
     from evolvent.gears.solution.certificates import BalanceError as BalanceError
+    from evolvent.gears.solution.other_flanks import with_modifications as with_modifications
     from evolvent.gears.solution.solver import ExtendedChartWarning as ExtendedChartWarning
     from evolvent.gears.solution.solver import condense as condense
     from evolvent.gears.solution.solver import solve_single_position as solve_single_position

@@ -13,6 +13,7 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.excitation.line_mesh import LineFigures
 from evolvent.dynamics.excitation.loaded_mesh import (
     LoadedMesh,
     certify_torques,
@@ -77,6 +78,28 @@ class GearExcitation:
     def tangent_stiffness(self) -> Floats:
         """Tangent mesh stiffness (n, m) of the whole face [N/mm]."""
         return self.mesh.loaded.stiffness
+
+    @property
+    def face_load_factor(self) -> Floats:
+        """Face load factor K_Hβ (m,) (ISO 6336-1:2006, 7.2.2) under each torque. Raises InputError for gears in the
+        plane, or whose contact is resolved."""
+        if self._line.is_plane:
+            refuse("gears", "gears in space, which have a face load factor", Words("gears in the plane"),
+                   "condense them with GearOptions(in_space=True)")
+        return self._line.face_load_factor
+
+    @property
+    def largest_pressure(self) -> Floats:
+        """Largest of Hertz' p_0 (m,) under each torque [MPa], away from edges of tips and from starts of linear
+        reliefs. Raises InputError for gears whose contact is resolved."""
+        return self._line.largest_pressure_MPa
+
+    @property
+    def _line(self) -> LineFigures:
+        if self.mesh.loaded.line is None:
+            refuse("gears", 'gears of mesh level "line"', Words("gears whose contact is resolved"),
+                   "solve_pitch has their pressures and their load over the face")
+        return self.mesh.loaded.line
 
     @property
     def secant_stiffness(self) -> Floats:

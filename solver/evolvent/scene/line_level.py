@@ -10,7 +10,7 @@ LINE: Level = "line"
 """Mesh level of line contact."""
 RESOLVED_PARTS: tuple[SkipName, ...] = ("friction-terms", "one-sector", "window", "deflected-flanks", "two-level")
 """Parts of a resolved contact, which a line contact has not."""
-SERVED = "evolvent excitation and evolvent dynamics"
+SERVED = "evolvent excitation, evolvent dynamics and evolvent design"
 """Commands that compute in line contact, in words."""
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.line.stations import Stations
 from evolvent.gears.unloaded_error import Facing, RigidFlanks
-from evolvent_meshes.arrays import Bools, Floats
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -31,6 +31,10 @@ WITHIN = 0.3
 """Largest such distance over that from the base circle, where the involute ends."""
 STRAIGHTEST = 0.1
 """Least curvature of a fitted parabola over that of the flanks without modifications, for the step to its vertex."""
+
+
+Across = Callable[..., Floats]
+"""Function of distances (p, k) and of indices (p,): see `gap_across`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +64,8 @@ class GapProfile:
     """The gap across the contact lines at points (p,), both gears at their nominal rotations. Distances are from the
     line of flanks without modifications [mm of profile arc], positive towards the pinion's tip."""
 
-    across: Callable[[Floats], Floats]
-    """Function of distances (p, k): gap (p, k) along the normal [mm]."""
+    across: Across
+    """Function of distances (p, k): gap (p, k) along the normal [mm]; of those of some rows with their indices."""
     low: Floats
     """(p,) least distance at which both flanks have points."""
     high: Floats
@@ -108,18 +112,20 @@ class GapProfile:
         return LineGap(least, shift, np.where(edge, self.radius, 1.0 / bent), edge)
 
 
-def gap_across(flanks: RigidFlanks, stations: Stations, free: Member) -> Callable[[Floats], Floats]:
-    """Function of distances (p, k) from the nominal line, towards the pinion's tip: gap (p, k) along the normal [mm].
-    """
+def gap_across(flanks: RigidFlanks, stations: Stations, free: Member) -> Across:
+    """Function of distances (p, k) from the nominal line, towards the pinion's tip, and of the indices (p,) of their
+    points, by default all: gap (p, k) along the normal [mm]."""
     mate, pair = free.mate, flanks.pair
     teeth, row = np.unique(stations.point_tooth, return_inverse=True)
     facing = Facing.of_teeth(PairRotation(pair, stations.angle), teeth, free)[row]
     base, cosine = pair.gears[mate].base_radius, math.cos(pair.pinion.base_helix_angle)
     arc = nominal_arcs(pair, mate, stations.roll_distance)
 
-    def gaps(distance: Floats) -> Floats:
-        roll = np.sqrt(np.maximum(2.0 * base * (arc[:, None] + mate.sign * distance), 0.0))
-        z = np.broadcast_to(stations.point_z[:, None], roll.shape)
-        return flanks.extended_gap(facing, free, roll, z)[0] * cosine
+    def gaps(distance: Floats, rows: Ints | None = None) -> Floats:
+        own = np.arange(len(arc)) if rows is None else rows
+        roll = np.sqrt(np.maximum(2.0 * base * (arc[own, None] + mate.sign * distance), 0.0))
+        z = np.broadcast_to(stations.point_z[own, None], roll.shape)
+        turned = Facing(facing.turn[own], facing.shift[own])
+        return flanks.extended_gap(turned, free, roll, z)[0] * cosine
 
     return gaps

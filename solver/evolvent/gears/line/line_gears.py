@@ -11,6 +11,7 @@ from evolvent.contact.hertz import line_half_width
 from evolvent.fem.material import contact_modulus
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.line.flank_compliance import FlankCompliance
+from evolvent.gears.line.kinked_gap import with_kinks
 from evolvent.gears.line.line_compliance import line_compliance
 from evolvent.gears.line.line_equilibrium import WIDEST, LineSystem
 from evolvent.gears.line.line_gap import GapProfile, LineGap, nominal_arcs
@@ -61,10 +62,13 @@ class LinePosition:
     def fitted(self, load: Floats) -> LinePosition:
         """The position with gap and curvature fitted over the width of the contact under loads per length (m,)
         [N/mm]."""
+        at_points, modulus = self.at_points(load), self.system.modulus
         reach = np.maximum(self.half_width(load), LEAST_REACH * self.profile.radius)
         gap, mean = self.gap, self.stations.mean
         for _ in range(FITS):
             gap = self.profile.fitted(gap.shift, reach)
+        nominal = np.asarray(line_half_width(at_points, self.profile.radius, modulus))
+        gap = with_kinks(self.profile, gap, at_points, nominal, modulus)
         return replace(self, gap=gap, system=replace(self.system, gap=mean(gap.gap), radius=mean(gap.radius)))
 
     def on_edges(self, load: Floats) -> float:
@@ -83,9 +87,12 @@ class LinePosition:
 
     def half_width(self, load: Floats) -> Floats:
         """Half-width b (p,) of the contact at the points [mm], under loads per length (m,) [N/mm]."""
+        return np.asarray(line_half_width(self.at_points(load), self.gap.radius, self.system.modulus))
+
+    def at_points(self, load: Floats) -> Floats:
+        """Loads per length (p,) at the points [N/mm]. load: (m,) of the stations."""
         hats = self.stations.hats
-        at_points = np.asarray(hats @ load) / np.asarray(hats.sum(axis=1)).ravel()
-        return np.asarray(line_half_width(at_points, self.gap.radius, self.system.modulus))
+        return np.asarray(hats @ load) / np.asarray(hats.sum(axis=1)).ravel()
 
     def _part(self, load: Floats, points: Bools) -> float:
         force = self.stations.hats @ load

@@ -5,8 +5,8 @@ Half-planes in contact over an interval of middle m and half-width b, under a lo
     δ(q) = least over m, b of  Ḡ(m, b) − c q ln(b/2),      c = 2/(π E*),      dδ/dq = −c ln(b/2)
 
 Ḡ is the mean of the gap over the interval with the weights of a flat punch's pressure, 1/√(1 − t²): below a flat punch
-the displacement is the same everywhere, −c ln(b/2) under a unit load (Johnson, Contact Mechanics, 1985, 2.7 and 2.8), so
-by reciprocity any pressure q on the interval displaces it by −c q ln(b/2) in this mean. A Hertz contact of half-width b
+the displacement is the same everywhere, −c ln(b/2) under a unit load (Johnson, Contact Mechanics, 1985, 2.8), so by
+reciprocity any pressure q on the interval displaces it by −c q ln(b/2) in this mean. A Hertz contact of half-width b
 and gap Ḡ − c q/2 has the same approach and the same stiffness, and stands for this one in the equilibrium.
 """
 

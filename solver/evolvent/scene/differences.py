@@ -22,7 +22,7 @@ def essence(scene: Scene) -> Scene:
     other torques of a list, and variants of its flanks."""
     exact = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in OF_OUTPUT))
     bare = scene.changed("load", percents=()).changed("pinion", flank_csv=None).changed("wheel", flank_csv=None)
-    return bare.model_copy(update={"title": "", "design": None, "output": OutputSection(), "exact": exact})
+    return bare.model_copy(update={"title": "", "output": OutputSection(), "exact": exact, "design": None})
 
 
 def identity(scene: Scene) -> list[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
@@ -53,6 +54,13 @@ class SolvedDesign:
     """All that were computed."""
     checked: tuple[Checked, ...]
     """The best variants, the best one first, and the scene as it stands."""
+    search_seconds: float
+    """Wall time of the search, with its gears [s]."""
+
+    @property
+    def timings(self) -> Timings:
+        """Wall time of all [s]; the gears in line contact count as positions."""
+        return sum((each.timings for each in self.checked), Timings().then_solved(self.search_seconds))
 
     @property
     def best(self) -> Checked | None:
@@ -127,19 +135,20 @@ class Design(Computation[SolvedDesign]):
         size = len(space.keys), len(self.loads.torques)
         known = call.on_first(lambda: kept_variants(store, *size)) if call.resume else no_variants(*size)
         gears = SharedGears([self._on_lines(space.as_it_stands).problem])
+        begin = time.perf_counter()
         with call.beginning(self.scene, gears.prepare) as prepare:
             shared = call.preparing(prepare)
             evaluation = Evaluation(call, store, cache(lambda: self._mesh(shared)), known)
             evaluation.of(space.as_it_stands[None])
             search(space, evaluation, bool(self._verified))
-            found = evaluation.asked
+            found, seconds = evaluation.asked, time.perf_counter() - begin
             best = Ranking(self.section, found.figures, bool(self._verified)).checked
             checked = [self._checked(call, shared, n, found.values[n]) for n in dict.fromkeys([0, *best])]
             first, *others = ranked(checked, best, self.section, size[1])
             if first.rank and self.section.tolerances:
                 deviating = evaluation.of(space.deviating(found.values[first.variant]))
                 first = replace(first, band=deviating.figures)
-        return SolvedDesign(found, (first, *others))
+        return SolvedDesign(found, (first, *others), seconds)
 
     def results(self, call: Call, solved: SolvedDesign) -> Results:
         """Tables of all variants and of the best ones, and the scene with the best one."""
@@ -151,7 +160,7 @@ class Design(Computation[SolvedDesign]):
             text = chosen.model_copy(update={"design": None}).resolved_toml()
             tables.append(Filled(BEST_SCENE, partial(_write_scene, text)))
         said = design_warnings(space, solved.variants, solved.checked, solved.best)
-        return Results(self.scene, tables, [*said], timings=sum((each.timings for each in solved.checked), Timings()))
+        return Results(self.scene, tables, [*said], timings=solved.timings)
 
     def _on_lines(self, variant: Floats) -> SceneTorques:
         """A variant (k,) in line contact under all torques."""

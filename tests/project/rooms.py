@@ -152,7 +152,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "check": (
         "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears.problem", "gears.meshing", "gears",
         "gears.line", "gears.sweep", "gears.pressure", "dynamics.oscillator", "dynamics.excitation", "dynamics",
-        "strength.fatigue", "scene", "scene.schema",
+        "dynamics.results", "strength.fatigue", "scene", "scene.schema",
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from mpi4py import MPI
 
 from evolvent.check.text_table import Row, table
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
-from evolvent.gears.gear_model import prepare_model
+from evolvent.dynamics.results.curves import LOADED, TANGENT, CoarseExcitation, pitch_curves
+from evolvent.gears.gear_model import Mesher, prepare_model
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
+from evolvent.gears.meshing.companion_meshes import companion_mesh
+from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.plain_text import fixed
 from evolvent.scene.scene import Scene
@@ -24,17 +31,22 @@ EDGES = (
 
 
 def contact_table(scene: Scene) -> str:
-    """Figures of the pitch in line contact without friction, under the scene's torque; without figures where edges of
-    tips bear.
+    """Figures of the pitch in line contact without friction, under the scene's torque, with their estimated errors;
+    without figures where edges of tips bear.
 
-    Raises MeshError, NotConverged, TooWide, NotPositiveDefinite, OutOfMemory.
+    Raises MeshError, NotConverged, TooWide, NotPositiveDefinite, OutOfMemory, NoForceSurface.
     """
     problem, count = gear_problem(line_scene(scene)), max(POSITIONS, scene.sweep.positions)
-    model = prepare_model(problem, MPI.COMM_SELF).model
     angles = np.array(uniform_pitch(scene.pinion.teeth, count).angles)
-    mesh = loaded_mesh(model, [problem.torque], angles, MPI.COMM_SELF)
-    assert mesh.line is not None
-    on_edges = 100.0 * float(mesh.line.on_edges.max())
+    unloaded = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
+
+    def solved(mesh: Mesher) -> MeshExcitation:
+        model = prepare_model(problem, MPI.COMM_SELF, mesh).model
+        return MeshExcitation(unloaded, loaded_mesh(model, [problem.torque], angles, MPI.COMM_SELF))
+
+    excitation = solved(run_mesh)
+    assert excitation.loaded.line is not None
+    on_edges = 100.0 * float(excitation.loaded.line.on_edges.max())
     rows = [
         Row("positions of the pitch", "", "", (str(count),)),
         Row("load on edges of tips, at most", "", "%", (fixed(on_edges, 2),)),
@@ -42,14 +54,21 @@ def contact_table(scene: Scene) -> str:
     title = "Contact (line contact on the elastic gears, no friction)"
     if on_edges > 100.0 * MOST_ON_EDGES:
         return f"{table(title, rows)}\n{EDGES}"
-    error, line = 1e3 * mesh.errors, mesh.line
-    face = [] if line.is_plane else [("face load factor", "K_Hβ", "", 2, float(line.face_load_factor[0]))]
-    figures = (
-        ("transmission error, mean", "", "µm", 2, float(np.mean(error))),
-        ("transmission error, peak to peak", "", "µm", 2, float(np.ptp(error))),
-        ("tangent mesh stiffness, mean", "c", "N/µm", 1, 1e-3 * float(np.mean(mesh.stiffness))),
-        *face,
-        ("Hertzian pressure away from edges, kinks", "p_0", "MPa", 0, float(line.largest_pressure_MPa[0])),
-    )
-    rows += [Row(name, symbol, unit, (fixed(value, digits),)) for name, symbol, unit, digits, value in figures]
-    return table(title, rows)
+    return table(title, [*rows, *_figures(excitation, solved(companion_mesh))], ("", "± error"))
+
+
+def _figures(excitation: MeshExcitation, coarse: MeshExcitation) -> Iterator[Row]:
+    """Figures under the only torque, with their errors. coarse: on the companion's meshes."""
+    curves = next(iter(pitch_curves(excitation, CoarseExcitation(coarse))))
+    error, stiffness, line, other = curves[LOADED], curves[TANGENT], excitation.loaded.line, coarse.loaded.line
+    assert line is not None and other is not None
+    face = ("face load factor", "K_Hβ", "", 2, line.face_load_factor[0], line.face_load_error(other)[0])
+    pressure = line.largest_pressure_MPa[0], line.pressure_error(other)[0]
+    for name, symbol, unit, digits, value, bar in (
+        ("transmission error, mean", "", "µm", 2, np.mean(error.values), error.mean_error),
+        ("transmission error, peak to peak", "", "µm", 2, np.ptp(error.values), error.peak_to_peak_error),
+        ("tangent mesh stiffness, mean", "c", "N/µm", 1, np.mean(stiffness.values), stiffness.mean_error),
+        *([] if line.is_plane else [face]),
+        ("Hertzian pressure away from edges, kinks", "p_0", "MPa", 0, *pressure),
+    ):
+        yield Row(name, symbol, unit, (fixed(float(value), digits), fixed(float(bar), digits)))

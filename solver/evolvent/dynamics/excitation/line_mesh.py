@@ -11,8 +11,9 @@ from evolvent.gears.line.line_gears import LineGears
 from evolvent.gears.line.line_result import LineResult
 from evolvent_meshes.arrays import Floats
 
-FACE_LOAD_OFF = 1e-2
-"""Part by which K_Hβ of a line contact is off beside the error of its meshes (docs/line_contact.md)."""
+FACE_LOAD_OFF, PRESSURE_OFF = 1e-2, 2e-2
+"""Parts by which K_Hβ and the largest p_0 of a line contact are off beside the error of its meshes
+(docs/line_contact.md)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +57,11 @@ class LineFigures:
     def largest_pressure_MPa(self) -> Floats:
         """Largest p_0 (m,) over the pitch under each torque [MPa]."""
         return np.asarray(self.pressure.max(axis=0))
+
+    def pressure_error(self, coarse: LineFigures) -> Floats:
+        """Error of the largest p_0 (m,) [MPa]: the difference to that on a companion's meshes, and `PRESSURE_OFF`."""
+        own = self.largest_pressure_MPa
+        return np.asarray(np.abs(own - coarse.largest_pressure_MPa) + PRESSURE_OFF * own)
 
     def lightest(self, count: int) -> LineFigures:
         """Figures under the lightest torques alone."""

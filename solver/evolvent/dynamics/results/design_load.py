@@ -14,8 +14,6 @@ from evolvent.gears.problem.iso_stiffness import stiffnesses
 from evolvent.results.tables.table import Record
 from evolvent_meshes.gears.pair import GearPair
 
-PRESSURE_OFF = 2e-2
-"""Part by which p_0 of a line contact is off beside the error of its meshes (docs/line_contact.md)."""
 LOADS = 400
 """Loads among which the least peak-to-peak value is sought before it is refined."""
 
@@ -108,12 +106,11 @@ def _of_line_contact(excitation: MeshExcitation, companion: CoarseExcitation) ->
     }
     if own is None:
         return found
-    found["largest_pressure_MPa"] = pressure = float(own.largest_pressure_MPa[-1])
+    found["largest_pressure_MPa"] = float(own.largest_pressure_MPa[-1])
     if not own.is_plane:
         found["face_load_factor"] = float(own.face_load_factor[-1])
     if coarse is not None:
-        mesh = abs(pressure - float(coarse.largest_pressure_MPa[-1]))
-        found["largest_pressure_MPa_error"] = mesh + PRESSURE_OFF * pressure
+        found["largest_pressure_MPa_error"] = float(own.pressure_error(coarse)[-1])
         if not own.is_plane:
             found["face_load_factor_error"] = float(own.face_load_error(coarse)[-1])
     return found

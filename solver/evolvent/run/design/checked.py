@@ -10,7 +10,6 @@ import numpy as np
 
 from evolvent.dynamics.excitation.line_mesh import LineFigures
 from evolvent.dynamics.results.curves import LOADED, TANGENT, pitch_curves
-from evolvent.dynamics.results.design_load import PRESSURE_OFF
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.tables.table import Table
@@ -165,6 +164,5 @@ def _pressure(solved: SolvedExcitation) -> Pairs:
     line, coarse = solved.excitation.loaded.line, _coarse(solved)
     if line is None:
         return []
-    own = line.largest_pressure_MPa
-    other = np.full(len(own), np.nan) if coarse is None else coarse.largest_pressure_MPa
-    return list(zip(map(float, own), map(float, np.abs(own - other) + PRESSURE_OFF * own)))
+    errors = np.full(len(line.largest_pressure_MPa), np.nan) if coarse is None else line.pressure_error(coarse)
+    return list(zip(map(float, line.largest_pressure_MPa), map(float, errors)))

@@ -57,8 +57,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.line": (
-        "meshes", "meshes.gears", "fem", "contact", "contact.newton", "gears.ring", "gears.two_level", "gears",
-        "gears.pressure",
+        "meshes", "meshes.gears", "fem", "fem.parallel", "contact", "contact.newton", "gears.ring", "gears.two_level",
+        "gears", "gears.contact", "gears.sweep", "gears.pressure",
     ),
     "gears.solution": (
         "meshes", "meshes.gears", "fem.backend", "contact.problem", "gears.problem", "gears.meshing", "gears",
@@ -74,7 +74,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "results": (
         "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
     ),
-    "results.error_bars": ("meshes", "results.archive", "results"),
+    "results.error_bars": ("meshes", "gears.line", "results.archive", "results"),
     "results.tables": (
         "meshes", "meshes.gears", "gears.pressure", "gears.solution", "scene", "results.archive", "results",
         "results.error_bars",
@@ -156,7 +156,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
-        "gears.solution", "dynamics", "check", "scene", "scene.schema", "results.*", "wear.*",
+        "gears.line", "gears.solution", "dynamics", "check", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
         "meshes.gears", "gears.problem", "gears.meshing", "gears.sweep", "scene.schema", "scene", "results.archive",

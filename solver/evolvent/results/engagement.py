@@ -68,7 +68,8 @@ class Engagement:
     """(n,) largest peak pressure along the contact line [MPa], see `line_peak`; NaN where no part of the line lies
     between the tip-edge zones, and where the contact of a spur pair covers the start of a linear relief."""
     kink_pressure: Floats
-    """(n,) largest peak pressure over the start of a linear relief [MPa]; NaN where the contact covers none."""
+    """(n,) largest peak pressure over the start of a linear relief [MPa]; NaN where the contact covers none, and in
+    line contact, which has none there."""
     at_zone_end: Bools
     """(n,) bool, whether the largest peak pressure lies at the limit of a tip-edge zone."""
     mean_pressure: Floats
@@ -188,7 +189,7 @@ def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, floa
             tooth.force * run.width,
             tooth.force / total,
             peak.pressure,
-            tooth.kink_pressure or np.nan,
+            np.nan if run.is_line else tooth.kink_pressure or np.nan,
             peak.at_zone_end,
             line_mean(solved.cut, tooth.tooth, inner),
             tooth.contact_length * run.width,

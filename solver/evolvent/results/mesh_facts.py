@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,19 +22,23 @@ class MeshFacts:
     min_scaled_jacobian: float
     """Smallest scaled Jacobian of the cells of both sectors; 1 is a cube, 0 a cell that is folded."""
     cells_across_contact_width: float
-    """Elements across the fitted contact width, median of all slices."""
+    """Elements across the fitted contact width, median of all slices; null in line contact, whose width the elements do
+    not resolve."""
     cells_across_narrow_contact: float
-    """Elements across the narrowest tenth of the contact: nine of ten slices of all positions have more."""
+    """Elements across the narrowest tenth of the contact: nine of ten slices of all positions have more; null in line
+    contact."""
 
 
 def cells_across(run: RunData, share: float = 0.5) -> float:
     """Fitted contact width over the mean length of a profile element: this quantile of all slices, by default the
-    median."""
+    median. NaN in line contact."""
+    if run.is_line:
+        return math.nan
     half_widths = np.concatenate([solved.cut.half_width for each in run.positions for solved in each])
     flank, radius, order = run.flank, run.pair.pinion.base_radius, run.scene.mesh.order
     return contact_cells.cells_across(half_widths, flank.z, flank.roll_length, radius, order, share)
 
 
 def few_cells_across(run: RunData) -> bool:
-    """Whether the contact is too few cells wide for single peaks to be trusted."""
-    return not cells_across(run) >= FEWEST_CELLS
+    """Whether the contact is too few cells wide for single peaks to be trusted. That of a line contact needs none."""
+    return not run.is_line and not cells_across(run) >= FEWEST_CELLS

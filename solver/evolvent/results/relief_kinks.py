@@ -75,9 +75,9 @@ def kink_notes(run: RunData, index: int) -> list[str]:
     kink = largest_kink(run, index)
     if kink is None:
         return []
-    covered = any(tooth.kink_pressure > 0.0 for each in run.positions for tooth in each[index].teeth)
+    drawn = not run.is_line and any(tooth.kink_pressure > 0.0 for each in run.positions for tooth in each[index].teeth)
     return [
         f"The largest pressure is that away from the starts of linear reliefs: where {kink.relief} begins, ξ = "
         f"{signed(kink.roll_distance, 2)} mm, a sharp kink has about {kink.pressure:.0f} MPa (closed form).",
-        *(["Crosses, over these starts, scatter with the mesh, which rounds the kinks."] if covered else []),
+        *(["Crosses, over these starts, scatter with the mesh, which rounds the kinks."] if drawn else []),
     ]

@@ -20,6 +20,7 @@ from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErro
 from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.store import ArchiveError
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.line_level import LINE
 from evolvent.scene.scene import Scene, kept_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
@@ -86,6 +87,11 @@ class RunData:
         return is_plane(self.shapes[0])
 
     @property
+    def is_line(self) -> bool:
+        """Whether the scene was solved in line contact, which has no pressure of its own across the contact."""
+        return self.scene.mesh.level == LINE
+
+    @property
     def width(self) -> float:
         """Factor from results to values of the whole face: the face width [mm] in 2D, 1 in 3D."""
         return self.pair.face_width if self.plane else 1.0
@@ -145,7 +151,7 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
     unloaded = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
 
     def solved(result: PositionResult, error: float) -> SolvedPosition:
-        cut = slices(result, flanks, materials)
+        cut = slices(result, flanks, materials, scene.mesh.level == LINE)
         return SolvedPosition(result, cut, tuple(tooth_summaries(result, cut)), error)
 
     positions = (tuple(solved(each, error) for each in one.results) for one, error in zip(swept, unloaded.tolist()))

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from evolvent.gears.gear_model import GearModel, Mesher, Preparation
+from evolvent.gears.line.line_sweep import line_sweep
 from evolvent.gears.meshed_gear import MeshedGear, meshed_gear
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
@@ -201,6 +202,9 @@ class _Sweep:
         """The missing positions at some of the friction coefficients."""
         gears, frictions = self._prepared(), self.scene.contact.friction[group]
         self.call.progress.stage(self.meshes.stage, len(self.pitch.angles), len(self.completed))
+        if gears.is_line:
+            yield from line_sweep(gears, self.pitch, frictions, self.call.comm, len(self.completed))
+            return
         state = self.resume.state or initial_state(frictions)
         before = [transmission_errors(position, frictions) for position in self.completed]
         yield from sweep_until_periodic(gears, self.pitch, frictions, state, self.call.comm, before)

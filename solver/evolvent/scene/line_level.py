@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from evolvent.scene.schema.bodies import Level, MeshSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
-from evolvent.scene.schema.output import ExactSection, SkipName
+from evolvent.scene.schema.output import ExactSection, OutputSection, SkipName
 
 LINE: Level = "line"
 """Mesh level of line contact."""
-RESOLVED_PARTS: tuple[SkipName, ...] = ("friction-terms", "one-sector", "window", "deflected-flanks", "two-level")
+RESOLVED_PARTS: tuple[SkipName, ...] = (
+    "friction-terms", "one-sector", "window", "deflected-flanks", "two-level", "fields",
+)
 """Parts of a resolved contact, which a line contact has not."""
-SERVED = "evolvent excitation, evolvent dynamics and evolvent design"
+SERVED = "evolvent run, loads, losses, excitation, dynamics and design"
 """Commands that compute in line contact, in words."""
 
 
@@ -31,6 +33,14 @@ def line_conflict(mesh: MeshSection, exact: ExactSection) -> InputProblem | None
         remedy = f"leave {' and '.join(without)} out, or give a level that resolves the contact"
         return InputProblem("exact.parts", shown(exact.parts), "parts that a line contact leaves out", remedy)
     return None
+
+
+def require_no_deformation(output: OutputSection, mesh: MeshSection) -> None:
+    """Raises SceneError where line contact is asked for displacement and stress of the teeth in contact, which needs
+    the pressure across it."""
+    if mesh.level == LINE and output.deformation:
+        allowed = f'false at mesh.level = "{LINE}", which has no pressure across the contact'
+        raise SceneError([InputProblem("output.deformation", shown(True), allowed, "--level quick")])
 
 
 def require_resolved(mesh: MeshSection, command: str) -> None:

@@ -116,6 +116,12 @@ def _picture_sentence(scene: Scene) -> str:
     return f"No {' and '.join(names)}, as the section [output] asks."
 
 
+def _fields_sentence(scene: Scene) -> str:
+    if _resolves(scene):
+        return "Fields for ParaView, because output.fields is false."
+    return "Fields for ParaView and the animation, which need the pressure across the contact."
+
+
 SKIPS: tuple[Skip, ...] = (
     Skip(
         "plane",
@@ -190,8 +196,8 @@ SKIPS: tuple[Skip, ...] = (
     ),
     Skip(
         "fields",
-        lambda scene: not scene.output.fields,
-        lambda _: "Fields for ParaView, because output.fields is false.",
+        lambda scene: not (scene.output.fields and _resolves(scene)),
+        _fields_sentence,
         tolerance=REPEATED,
     ),
     Skip(
@@ -243,13 +249,14 @@ def line_scene(scene: Scene, *parts: SkipName) -> Scene:
 
 
 def wanted_output(scene: Scene) -> OutputSection:
-    """Section [output] with all that exact.parts adds: pictures, animation, fields and error bars."""
+    """Section [output] with all that exact.parts adds: pictures, animation, fields and error bars; without animation
+    and fields where no pressure across the contact is computed, in line contact."""
     exact, asked = scene.exact.parts, scene.output
     drawn = "pictures" in exact
     return OutputSection(
         pictures=asked.pictures or drawn,
-        animation=asked.animation or drawn,
-        fields=asked.fields or "fields" in exact,
+        animation=(asked.animation or drawn) and _resolves(scene),
+        fields=(asked.fields or "fields" in exact) and _resolves(scene),
         error_bars=asked.error_bars or "error-bars" in exact,
         deformation=asked.deformation,
     )

@@ -20,6 +20,7 @@ from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.line.line_gears import MOST_ON_EDGES, LineGears
+from evolvent.gears.line.line_result import EdgeContact
 from evolvent.gears.solution.certificates import certify, energy_imbalance, require_balance
 from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
 from evolvent.gears.sweep.parallel_sweep import division
@@ -27,7 +28,6 @@ from evolvent.gears.sweep.position_result import position_result
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from evolvent.gears.sweep.worn_position import worn_on
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.errors import ResultError
 
 Positions = tuple[Mapping[float, SharedPosition], ...]
 """Positions of a rank, each by its torque [N·mm]."""
@@ -38,10 +38,6 @@ COLUMNS = 4
 torque, stored power."""
 LINE_COLUMNS = COLUMNS + 3
 """Least number of them in line contact: the part of the load on edges, p_0 and the load of a layer besides."""
-
-
-class EdgeContact(ResultError):
-    """Error for gears in line contact that bear on edges of tips."""
 
 
 @dataclass(frozen=True, eq=False)

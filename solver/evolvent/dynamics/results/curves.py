@@ -19,6 +19,7 @@ import numpy as np
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.harmonics import COUNT, mesh_harmonics
 from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve, Reduction
+from evolvent.results.error_bars.line_parts import ERROR_LEAST, ERROR_VARIES, SECANT_OFF, TANGENT_OFF
 from evolvent.results.error_bars.position_spacing import (
     JUMP,
     KINK,
@@ -41,9 +42,9 @@ QUANTITIES: dict[str, Callable[[MeshExcitation], Floats]] = {
 BENDS = {UNLOADED: KINK, LOADED: KINK, TANGENT: JUMP, SECANT: KINK}
 """Error of a step's mean over the bend of the step, see `position_spacing`: the tangent stiffness jumps where a tooth
 pair comes into contact, the others have kinks there."""
-LINE_OFF = {LOADED: 2e-3, TANGENT: 5e-3, SECANT: 2e-3}
-LINE_VARIES = {LOADED: 6e-3, TANGENT: 2e-2, SECANT: 6e-3}
-LINE_LEAST = {LOADED: 1e-3, TANGENT: 2e-3, SECANT: 1e-3}
+LINE_OFF = {LOADED: 2e-3, TANGENT: TANGENT_OFF, SECANT: SECANT_OFF}
+LINE_VARIES = {LOADED: ERROR_VARIES, TANGENT: 2e-2, SECANT: 6e-3}
+LINE_LEAST = {LOADED: ERROR_LEAST, TANGENT: 2e-3, SECANT: 1e-3}
 """Parts by which values of a line contact are off beside the error of its meshes; by which peak-to-peak values and
 amplitudes are; and the least error of these, over the mean value. Nine in ten deviations from resolved contacts are
 smaller (docs/line_contact.md)."""

@@ -2,7 +2,7 @@
 
 A flank is a lattice: rows of nodes at radii, levels at heights. Loads and displacements are along the normals of the
 helicoid there, towards the tooth; of the displacements of a condensed gear no more enters a line contact without
-friction.
+friction. Friction acts along the profile, in the transverse section; it moves the flanks along their normals too.
 """
 
 from __future__ import annotations
@@ -32,19 +32,33 @@ class FlankCompliance:
     """(R,) arc ρ²/2r_b of the rows of nodes, ascending towards the tip [mm]."""
     heights: Floats
     """(L,) heights of the levels of nodes, ascending [mm]; 0 alone in the plane."""
+    nodes: Ints
+    """(n,) numbers on the condensed flank of the nodes, which here are numbered by rows."""
+    inwards: Floats
+    """(n, d) normals of the helicoid at the nodes of tooth 0, towards the tooth."""
+    towards_tip: Floats
+    """(n, d) tangents of the profile at the nodes of tooth 0, in the transverse section."""
     between_nodes: DirectedCompliance
     """Between the nodes of all teeth, numbered by rows."""
+    by_friction: DirectedCompliance | None = None
+    """Displacements along the normals under forces along the profile towards the tip; None where there is no friction.
+    """
 
     @staticmethod
-    def of(body: GearBody) -> FlankCompliance:
-        """The compliance of a gear that was condensed for line contact."""
+    def of(body: GearBody, friction: bool = False) -> FlankCompliance:
+        """The compliance of a gear that was condensed for line contact. friction: whether tangential loads act."""
         chain, points, base = body.chain, body.flank.points, body.gear.base_radius
         assert isinstance(chain, ChainedCompliance)
         lattice, flank = FlankLattice.of(np.pad(points, ((0, 0), (0, 3 - body.d)))), Flank(body.gear)
         roll = flank.roll_length(lattice.radius)
-        normals = flank.helicoid_normal(roll[:, None], lattice.height)[..., : body.d]
-        directed = chain.directed(lattice.nodes.ravel(), normals.reshape(-1, body.d))
-        return FlankCompliance(body.gear, body.member.sign, roll**2 / (2.0 * base), lattice.height, directed)
+        inwards = -flank.helicoid_normal(roll[:, None], lattice.height)[..., : body.d]
+        nodes, across = lattice.nodes.ravel(), inwards.reshape(-1, body.d)
+        along = _towards_tip(across, points[nodes])
+        tangential = chain.directed(nodes, across, along) if friction else None
+        return FlankCompliance(
+            body.gear, body.member.sign, roll**2 / (2.0 * base), lattice.height, nodes, across, along,
+            chain.directed(nodes, across), tangential,
+        )
 
     def shapes(self, arc: Floats, z: Floats) -> sp.csr_matrix:
         """Shape functions (p, nodes) at points of the flank, at arcs (p,) and heights (p,) [mm]."""
@@ -58,6 +72,15 @@ class FlankCompliance:
         count = nodes[0].size if len(nodes) else 1
         ends = count * np.arange(len(arc) + 1)
         return sp.csr_matrix((values.ravel(), nodes.ravel(), ends), (len(arc), len(self.arcs) * len(self.heights)))
+
+
+def _towards_tip(normals: Floats, points: Floats) -> Floats:
+    """Unit tangents (n, d) of the profile in the transverse section, towards the tip, from the normals (n, d) of the
+    flank at its points (n, d) [mm]."""
+    tangents = np.zeros_like(normals)
+    tangents[:, 0], tangents[:, 1] = -normals[:, 1], normals[:, 0]
+    outwards = np.sum(tangents[:, :2] * points[:, :2], axis=1)
+    return np.asarray(tangents * (np.sign(outwards) / np.linalg.norm(tangents, axis=1))[:, None])
 
 
 def quadratic_shapes(grid: Floats, values: Floats) -> tuple[Ints, Floats]:

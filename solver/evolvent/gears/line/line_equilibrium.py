@@ -1,9 +1,10 @@
 """The loads per length of a line contact in equilibrium with a torque.
 
     Σ_j B_ij q_j + ℓ_i φ(q_i) + ℓ_i g_i − H_i δ = 0   where q_i > 0, not negative elsewhere
-    Hᵀ q = F,      φ(q) = (2/(π E*)) q [¼ + ln(w/b)],   b = √(4 q ρ / (π E*))
+    Gᵀ q = F,      φ(q) = (2/(π E*)) q [¼ + ln(w/b)],   b = √(4 q ρ / (π E*))
 
-φ is what the half-ellipse of half-width w leaves out of the approach of both bodies: the difference of the mean
+G is H without friction; with it G holds the moment of friction too, and B the normal displacements by friction. φ is
+what the half-ellipse of half-width w leaves out of the approach of both bodies: the difference of the mean
 displacements under it and under Hertz' half-ellipse b (Johnson, Contact Mechanics, 1985, 4.2 and 5.6).
 """
 
@@ -46,6 +47,9 @@ class LineSystem:
     """(m,) work of a unit approach along the line of action on a unit load per length [mm]."""
     modulus: float
     """Contact modulus E* [MPa]."""
+    moment: Floats | None = None
+    """(m,) moment G of a unit load per length about the axis of the gear whose torque is given, over its base radius
+    [mm]; None without friction, where it is H."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +67,8 @@ class LineEquilibrium:
 
 
 def line_equilibrium(system: LineSystem, force: float) -> LineEquilibrium:
-    """Equilibrium under a force F along the line of action in the transverse section [N]. Raises NotConverged."""
+    """Equilibrium under a force F [N]: torque over base radius, without friction along the line of action in the
+    transverse section. Raises NotConverged."""
     L, H, c = system.length, system.H, 2.0 / (math.pi * system.modulus)
     mean = force / float(H.sum())
     q = _on_springs(system, force)
@@ -92,20 +97,25 @@ def line_equilibrium(system: LineSystem, force: float) -> LineEquilibrium:
 
 def _on_springs(system: LineSystem, force: float) -> Floats:
     """Loads (m,) of a foundation of independent springs, each as soft as a station under equal loads on all of them."""
-    L, H, softness = system.length, system.H, system.B.sum(axis=1)
+    L, H, G, softness = system.length, system.H, _moment(system), system.B.sum(axis=1)
 
     def loads(δ: float) -> Floats:
         return np.maximum(H * δ - L * system.gap, 0.0) / softness
 
     touch = L * system.gap / H
-    stiff = float(H @ (H / softness))
+    stiff = float(G @ (H / softness))
     low, high = float(touch.min()), float(touch.max()) + 2.0 * force / stiff
-    return loads(float(brentq(lambda δ: float(H @ loads(δ)) - force, low, high)))
+    return loads(float(brentq(lambda δ: float(G @ loads(δ)) - force, low, high)))
 
 
 def _matrix(system: LineSystem, active: Bools, diagonal: Floats) -> Floats:
     a = np.flatnonzero(active)
     T = np.zeros((len(a) + 1, len(a) + 1))
     T[:-1, :-1] = system.B[np.ix_(a, a)] + np.diag(diagonal[a])
-    T[:-1, -1], T[-1, :-1] = -system.H[a], system.H[a]
+    T[:-1, -1], T[-1, :-1] = -system.H[a], _moment(system)[a]
     return T
+
+
+def _moment(system: LineSystem) -> Floats:
+    """Moments G (m,)."""
+    return system.H if system.moment is None else system.moment

@@ -12,8 +12,9 @@ from evolvent.fem.material import contact_modulus
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.line.flank_compliance import FlankCompliance
 from evolvent.gears.line.kinked_gap import with_kinks
-from evolvent.gears.line.line_compliance import line_compliance
+from evolvent.gears.line.line_compliance import friction_compliance, line_compliance
 from evolvent.gears.line.line_equilibrium import WIDEST, LineSystem
+from evolvent.gears.line.line_friction import LineFriction, line_friction, sliding_direction
 from evolvent.gears.line.line_gap import GapProfile, LineGap, nominal_arcs
 from evolvent.gears.line.stations import Stations, stations_at
 from evolvent.gears.unloaded_error import RigidFlanks
@@ -54,10 +55,24 @@ class LinePosition:
     """Least gap at the points of the stations."""
     system: LineSystem
     """Equations for the loads per length."""
+    place: Floats
+    """(p,) distance of the half-ellipse from the line of flanks without modifications [mm of profile arc], as of
+    `LineGap.shift`."""
     width: Floats
     """(p,) half-width w of the half-ellipse at the points [mm]."""
     to_tip: Floats
     """(p,) distance of the points from the nearest edge of a tip [mm of profile arc]."""
+    friction: LineFriction | None = None
+    """Friction for each unit of its coefficient; None where the gears were prepared without."""
+
+    def rubbing(self, friction: float, holds: Member) -> LinePosition:
+        """The position with a friction coefficient. holds: gear whose torque is given."""
+        if friction == 0.0:
+            return self
+        assert self.friction is not None
+        B, moment = self.friction.compliance, self.friction.moments[holds]
+        system = replace(self.system, B=self.system.B + friction * B, moment=self.system.H + friction * moment)
+        return replace(self, system=system)
 
     def fitted(self, load: Floats) -> LinePosition:
         """The position with gap and curvature fitted over the width of the contact under loads per length (m,)
@@ -113,9 +128,9 @@ class LineGears:
     """Gear that turns under its torque."""
 
     @staticmethod
-    def of(model: GearModel) -> LineGears:
-        """The gears of a model that was condensed for line contact."""
-        pinion, wheel = (FlankCompliance.of(body) for body in model.bodies)
+    def of(model: GearModel, friction: bool = False) -> LineGears:
+        """The gears of a model that was condensed for line contact. friction: whether positions are to have some."""
+        pinion, wheel = (FlankCompliance.of(body, friction) for body in model.bodies)
         modulus = contact_modulus(*(body.material for body in model.bodies))
         return LineGears(RigidFlanks(model.pair, model.charts), (pinion, wheel), modulus, model.load.on)
 
@@ -167,7 +182,16 @@ class LineGears:
         L, mean = stations.lengths, stations.mean
         H = L * math.cos(self.pair.pinion.base_helix_angle)
         system = LineSystem(B, L, mean(gap.gap), mean(gap.radius), mean(np.log(width)), H, self.modulus)
-        return LinePosition(stations, profile, gap, system, width, self._to_tip(stations, gap.shift))
+        friction = self._friction(stations, shift, width)
+        return LinePosition(stations, profile, gap, system, shift, width, self._to_tip(stations, gap.shift), friction)
+
+    def _friction(self, stations: Stations, shift: Floats, width: Floats) -> LineFriction | None:
+        """Friction at a position; None where the gears were prepared without. shift, width: of `line_compliance`."""
+        if self.gears[0].by_friction is None:
+            return None
+        direction = sliding_direction(self.pair, stations)
+        compliance = friction_compliance(self.pair, self.gears, stations, shift, width, direction)
+        return line_friction(self.pair, stations, compliance)
 
     def _to_tip(self, stations: Stations, shift: Floats) -> Floats:
         """Distances (p,) from the nearest edge of a tip [mm]. shift: (p,) as of `LineGap`."""

@@ -12,10 +12,17 @@ from evolvent.gears.line.line_gears import LinePosition
 from evolvent.gears.pressure.relief_starts import ContactWidth, covering, kinks
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
+FACE_LOAD_OFF = 1e-2
+"""Part by which K_Hβ of a line contact is off beside the error of its meshes (docs/line_contact.md)."""
 MOST_TOO_WIDE = 1e-2
 """Largest part of the load whose contact may be too wide for the half-ellipse."""
+
+
+class EdgeContact(ResultError):
+    """Error for gears in line contact that bear on edges of tips."""
 
 
 class TooWide(ResultError):
@@ -32,14 +39,23 @@ class LineResult:
     """Loads per length in equilibrium with the torque."""
     cosine: float
     """cos β_b: height over length of the contact lines."""
+    friction: float = 0.0
+    """Friction coefficient μ."""
 
     @staticmethod
-    def of(position: LinePosition, force: float) -> LineResult:
-        """The position under a force along the line of action, in the transverse section [N; N/mm in the plane].
+    def of(
+        position: LinePosition, force: float, friction: float = 0.0, holds: Member = Member.PINION
+    ) -> LineResult:
+        """The position under a torque over the base radius of its gear [N; N/mm in the plane], without friction the
+        force along the line of action in the transverse section.
+
+        friction: coefficient μ; where it is not 0 the position is of gears that were prepared with friction.
+        holds: gear whose torque is given; without friction it makes no difference.
 
         Raises NotConverged, TooWide.
         """
-        there = position.fitted(line_equilibrium(position.system, force).load)
+        rubbing = position.rubbing(friction, holds)
+        there = rubbing.fitted(line_equilibrium(rubbing.system, force).load)
         found, system = line_equilibrium(there.system, force), there.system
         if (part := there.too_wide(found.load)) > MOST_TOO_WIDE:
             raise TooWide(
@@ -47,7 +63,22 @@ class LineResult:
                 f"load, found a wider one under {100 * part:.2g} % of the load; lower the torque, or resolve the "
                 'contact (mesh.level = "quick")'
             )
-        return LineResult(there, found, float((system.H / system.length)[0]))
+        return LineResult(there, found, float((system.H / system.length)[0]), friction)
+
+    @property
+    def forces(self) -> tuple[float, float]:
+        """Torques of pinion and wheel over their base radii [N; N/mm in the plane]."""
+        q, H, friction = self.equilibrium.load, self.position.system.H, self.position.friction
+        if friction is None or self.friction == 0.0:
+            return float(H @ q), float(H @ q)
+        pinion, wheel = (float((H + self.friction * moment) @ q) for moment in friction.moments)
+        return pinion, wheel
+
+    @property
+    def friction_power(self) -> float:
+        """Power lost to friction per rad/s of pinion speed [N·mm; per mm of width in the plane]."""
+        sliding = self.position.friction
+        return 0.0 if sliding is None else self.friction * float(sliding.sliding @ self.equilibrium.load)
 
     @property
     def teeth(self) -> list[int]:

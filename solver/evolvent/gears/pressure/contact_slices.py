@@ -108,9 +108,11 @@ class ToothSummary:
 
 
 def slices(
-    result: PositionResult, flanks: tuple[FlankFacets, FlankFacets], materials: tuple[Material, Material]
+    result: PositionResult, flanks: tuple[FlankFacets, FlankFacets], materials: tuple[Material, Material],
+    exact: bool = False,
 ) -> Slices:
-    """The slices of a position. flanks, materials: of pinion and wheel."""
+    """The slices of a position. flanks, materials: of pinion and wheel. exact: whether the contact is that of exact
+    flanks, which no facets round: a line contact's."""
     c, edges = result.contact, layer_edges(flanks[0].z)
     tooth, layer, number = slice_numbers(c, edges)
     edge = np.bincount(number, c.edge, len(tooth)) > 0.0
@@ -122,7 +124,7 @@ def slices(
     largest, peak, half = _fits(c, number, load, edge)
     z = 0.5 * (edges[:-1] + edges[1:])[layer]
     pair = result.stand.pair
-    facet = np.column_stack([flank.lengths_at(ρ) for flank, ρ in zip(flanks, pair.curvature_radii(ξ))])
+    facet = np.column_stack([flank.lengths_at(ρ) for flank, ρ in zip(flanks, pair.curvature_radii(ξ))]) * (not exact)
     cut = Slices(
         tooth, z, ξ, width, load, peak, largest, half, hertz, radius, edge, facet, *np.zeros((2, len(ξ)), dtype=bool)
     )

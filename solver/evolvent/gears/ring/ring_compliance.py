@@ -66,12 +66,14 @@ class MappedNodes:
 
 @dataclass(frozen=True, eq=False)
 class DirectedCompliance:
-    """Displacements of the nodes of all flanks along one direction a node, under forces along these."""
+    """Displacements of the nodes of all flanks along one direction a node, under forces along one direction a node."""
 
     own: Floats
     """(n, n) of the sector of the loaded tooth [mm/N]."""
     modes: Floats
-    """(n, r) of the coupling of sectors."""
+    """(n, r) of the coupling of sectors, along the directions of the displacements."""
+    force_modes: Floats
+    """(n, r) of the coupling of sectors, along the directions of the forces."""
     between: Callable[[int, int], Floats]
     """Displacements (r, r) of the modes of a tooth by forces on those of another one [mm/N]."""
 
@@ -152,15 +154,19 @@ class ChainedCompliance:
                 result[ends[j] : ends[j + 1], ends[i] : ends[i + 1]] = block.T
         return result
 
-    def directed(self, nodes: Ints, axes: Floats) -> DirectedCompliance:
-        """Compliance between some nodes (n,) of each tooth along directions (n, d) in the frame of its sector."""
+    def directed(self, nodes: Ints, axes: Floats, forces: Floats | None = None) -> DirectedCompliance:
+        """Compliance between some nodes (n,) of each tooth along directions (n, d) in the frame of its sector. forces:
+        (n, d) directions of the forces, by default those of the displacements."""
+        along = axes if forces is None else forces
         dofs, d = _dofs(nodes, self.dimension), self.dimension
         right = np.empty((len(dofs), len(nodes)))
-        for j, (node, axis) in enumerate(zip(nodes, axes)):
+        for j, (node, axis) in enumerate(zip(nodes, along)):
             right[:, j] = self._sector.compliance[d * node : d * node + d].T[dofs] @ axis  # C is symmetric
         own = np.einsum("iaj,ia->ij", right.reshape(len(nodes), d, -1), axes)
-        modes = np.einsum("iar,ia->ir", self._modes[dofs].reshape(len(nodes), d, -1), axes)
-        return DirectedCompliance(own, modes, self._between)
+        modes, force_modes = (
+            np.einsum("iar,ia->ir", self._modes[dofs].reshape(len(nodes), d, -1), each) for each in (axes, along)
+        )
+        return DirectedCompliance(own, modes, force_modes, self._between)
 
     def window(self, parts: Sequence[tuple[int, Ints]]) -> RingWindow:
         """Compliance between some nodes (k,) of some teeth, each at most once. Raises IndexError."""

@@ -17,7 +17,8 @@ D and the rates p are those of `compared`.
   much it falls if the layer is twice as long: as much as the limit at the end of the face exceeds it.
 
 Both meshes are solved at the same positions. The error of sampling the pitch at these positions is estimated by
-`position_spacing` and added. Errors of the model, such as effects that the scene leaves out, are in neither.
+`position_spacing` and added, and in line contact what it is off by beside the resolved contact (`line_parts`). Errors
+of the model, such as effects that the scene leaves out, are in none of them.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ from evolvent.results.archive.error_bar_data import (
 )
 from evolvent.results.engagement import engagement, with_hertz, with_line_loads
 from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve, Reduction
+from evolvent.results.error_bars.line_parts import line_parts
 from evolvent.results.error_bars.position_spacing import PositionFigure, spacing_errors
 from evolvent.results.face_load import FaceLoad, face_load
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
@@ -72,7 +74,10 @@ def estimated_errors(run: RunData, companion: Companion) -> EstimatedErrors:
     try:
         mesh = errors_between(run, companion.run)
         parts = [(errors, spacing_errors(run, k)) for k, errors in enumerate(mesh)]
-        return EstimatedErrors(tuple(summed_errors(*each) for each in parts), METHOD, "")
+        sums = [summed_errors(*each) for each in parts]
+        if run.is_line:
+            sums = [summed_errors(errors, line_parts(run, k)) for k, errors in enumerate(sums)]
+        return EstimatedErrors(tuple(sums), METHOD, "")
     except (ValueError, IndexError) as error:  # a companion without these figures, as without any contact
         return EstimatedErrors(missing=f"The coarse companion's figures cannot be compared: {error}")
 

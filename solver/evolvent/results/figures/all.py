@@ -26,7 +26,8 @@ Draw = Callable[[RunData], Figure]
 def pictures(run: RunData) -> Iterator[Picture]:
     """The pictures and the animation for which the scene's [output] asks."""
     if run.scene.output.pictures:
-        yield Picture("01_loaded_pair.png", partial(_loaded_pair, run))
+        if not run.is_line:
+            yield Picture("01_loaded_pair.png", partial(_loaded_pair, run))
         for name, draw in figures(run):
             yield Picture(f"{name}.png", partial(png_of, draw, run))
     if run.scene.output.animation:
@@ -34,9 +35,10 @@ def pictures(run: RunData) -> Iterator[Picture]:
 
 
 def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
-    """Name, without ending, and drawing function of every plane figure for which the run has data."""
+    """Name, without ending, and drawing function of every plane figure for which the run has data; in line contact
+    those that need no pressure across the contact."""
     several, helical = len(run.frictions) > 1, run.pair.pinion.helix_angle > 0.0
-    if not run.plane:
+    if not (run.plane or run.is_line):
         yield "02_flank_pressure", pressure_map
     yield "03_stress_over_engagement", engagement_stress
     if helical:
@@ -49,7 +51,8 @@ def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
         yield "07_points_over_friction", points_over_friction
     yield "08_load_sharing", load_sharing
     yield "09_transmission_error", transmission_error
-    yield "10_hertz", hertz_comparison
+    if not run.is_line:
+        yield "10_hertz", hertz_comparison
     if any(run.frictions):
         yield "11_friction_loss", losses
     yield "12_line_load", line_load

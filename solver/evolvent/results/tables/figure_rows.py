@@ -47,7 +47,7 @@ def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
         mesh_stiffness_N_per_mm_um=mesh_stiffness(run, solved),
         secant_stiffness_N_per_mm_um=secant_stiffness(run, solved),
         max_pressure_MPa=float(np.fmax.reduce([tooth.max_pressure_MPa for tooth in teeth])),
-        kink_pressure_MPa=max(tooth.kink_pressure_MPa for tooth in teeth),
+        kink_pressure_MPa=float(np.max([tooth.kink_pressure_MPa for tooth in teeth])),
         tip_edge=any(tooth.edge_pressure > 0.0 for tooth in solved.teeth),
         loss_percent=loss_percent(run, solved),
         newton_iterations=result.iterations,
@@ -60,7 +60,14 @@ def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
 def _tooth_row(run: RunData, solved: SolvedPosition, tooth: ToothSummary) -> ToothRow:
     length, peak = tooth.contact_length * run.width, line_peak(run.pair, solved.cut, tooth.tooth, run.inner_path)
     force = tooth.force * run.width
-    return ToothRow(tooth.tooth, force, peak.pressure, length, tooth.edge_pressure, tooth.kink_pressure)
+    edge, kink = (_apart(run, pressure) for pressure in (tooth.edge_pressure, tooth.kink_pressure))
+    return ToothRow(tooth.tooth, force, peak.pressure, length, edge, kink)
+
+
+def _apart(run: RunData, pressure: float) -> float:
+    """Pressure on an edge or over a kink [MPa], 0 where neither bears; NaN in line contact, whose pressure is Hertz'
+    and not the one there."""
+    return math.nan if run.is_line and pressure > 0.0 else pressure
 
 
 def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> list[FrictionRow]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, FINER, SCATTER, few_cells
-from evolvent.results.engagement import engagements, largest_peak
+from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.relief_kinks import largest_kink
 from evolvent.results.run_data import RunData, SolvedPosition
@@ -67,7 +67,7 @@ def _about_the_load(run: RunData) -> Iterator[str]:
 def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:
     """Warnings of few cells across the contact and of distorted cells."""
     cells, narrow = mesh.cells_across_contact_width, mesh.cells_across_narrow_contact
-    if not (cells >= FEWEST_CELLS and narrow >= FEWEST_NARROW):
+    if not run.is_line and not (cells >= FEWEST_CELLS and narrow >= FEWEST_NARROW):
         wide = f"{cells:.1f} elements wide (median; {narrow:.1f} in its narrowest tenth)"
         yield f"The contact is {wide}; {_few_cells(run)}"
     if not mesh.min_scaled_jacobian >= WORST_CELL:
@@ -100,10 +100,8 @@ def _about_tip_edges(run: RunData) -> Iterator[str]:
     found = tip_edge_contact(run)
     if not found:
         return
-    yield (
-        f"{found}: the pressure there is singular, grows with mesh refinement, and is reported separately "
-        f"(edge_pressure_MPa); {RELIEVE}."
-    )
+    apart = "grows with mesh refinement, and is reported separately (edge_pressure_MPa)"
+    yield f"{found}: the pressure there is singular, {'and not known' if run.is_line else apart}; {RELIEVE}."
     peaks = [largest_peak(run, index) for index in range(len(run.frictions))]
     if any(peak.at_zone_end for peak in peaks):
         ξ = next(peak.roll_distance for peak in peaks if peak.at_zone_end)
@@ -152,7 +150,10 @@ def _about_relief(run: RunData) -> Iterator[str]:
 def _covered(run: RunData) -> float:
     """Share of the positions of an engagement at which the contact covers the start of a linear relief, the largest of
     all friction coefficients."""
-    return max(float(np.isfinite(curve.kink_pressure).mean()) for curve in engagements(run))
+    return max(
+        float(np.mean([tooth.kink_pressure > 0.0 for each in run.positions for tooth in each[index].teeth]))
+        for index in range(len(run.frictions))
+    )
 
 
 def _about_large_bars(rows: Sequence[FrictionRow]) -> Iterator[str]:

@@ -56,16 +56,17 @@ class ToothRow:
     """Normal force on the pair."""
     max_pressure_MPa: float
     """Largest contact pressure between the tip-edge zones, fitted in each slice and, on a helical line, averaged with
-    the neighbouring slices (1:2:1); null where no slice lies between these zones, and where the contact of a spur pair
-    covers the start of a linear tip or root relief."""
+    the neighbouring slices (1:2:1), in line contact Hertz' for the load per length; null where no slice lies between
+    these zones, and where the contact of a spur pair covers the start of a linear tip or root relief."""
     contact_length_mm: float
     """Length of the contact line under load."""
     edge_pressure_MPa: float
-    """Largest pressure on a tip edge, 0 where no edge bears. The pressure there is singular: its value depends on the
-    mesh."""
+    """Largest pressure on a tip edge, 0 where no edge bears; null in line contact where one does. The pressure there is
+    singular: its value depends on the mesh."""
     kink_pressure_MPa: float
     """Largest contact pressure, fitted in each slice, where the contact of a spur pair covers the start of a linear tip
-    or root relief; 0 where it covers none. Over that kink of the flank it depends on how sharp the kink is."""
+    or root relief; 0 where it covers none, null in line contact where it does. Over that kink of the flank it depends
+    on how sharp the kink is."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ class PositionRow:
     where there is none."""
     kink_pressure_MPa: float
     """Largest contact pressure of all teeth over the start of a linear tip or root relief of a spur pair; 0 where the
-    contact covers none."""
+    contact covers none, null in line contact where it does."""
     tip_edge: bool
     """Whether a tooth bears on a tip edge, where the pressure is singular."""
     loss_percent: float
@@ -118,8 +119,9 @@ class FrictionRow:
     """Coulomb friction coefficient μ."""
     max_pressure_MPa: float
     """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones: peak p0 of the
-    half-ellipse with a slice's line load and second moment. On a spur pair it is that away from the starts of linear
-    tip and root reliefs, whose contact does not cover the kink that the flank has there."""
+    half-ellipse with a slice's line load and second moment, in line contact Hertz' for the load. On a spur pair it is
+    that away from the starts of linear tip and root reliefs, whose contact does not cover the kink that the flank has
+    there."""
     max_pressure_angle_deg: float
     """Pinion rotation of the tooth at its largest contact pressure; 0 is the pitch point at mid-face."""
     max_pressure_at_zone_end: bool

@@ -31,6 +31,7 @@ class Loads(Computation[None]):
     """Name of its folder -> run under each torque, on meshes that serve all of them; the heaviest first."""
     name: ClassVar[str] = "loads"
     command: ClassVar[str] = "loads"
+    in_line_contact: ClassVar[bool] = True
     outputs: ClassVar[Outputs] = Outputs((LOADS.name,), (LOADS_PICTURE,), stored=(LOADS.name,))
     is_list: ClassVar[bool] = True
 
@@ -49,6 +50,11 @@ class Loads(Computation[None]):
     def sized(self) -> list[Scene]:
         """Scenes of all runs."""
         return [run.scene for run in self.runs.values()]
+
+    def require_level(self) -> None:
+        """Raises SceneError where its runs do."""
+        for run in self.runs.values():
+            run.require_level()
 
     def warnings(self) -> Iterable[str]:
         """None beside those of the runs."""

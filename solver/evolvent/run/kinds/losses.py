@@ -96,6 +96,7 @@ class Losses(Computation[list[SolvedPitches]]):
 
     name: ClassVar[str] = "losses"
     command: ClassVar[str] = "losses"
+    in_line_contact: ClassVar[bool] = True
     outputs: ClassVar[Outputs] = Outputs(
         (LOSSES.name,), (LOSSES_PICTURE,), stored=(f"results/{PART.format(0)}state.npz", "results/*torque_*.npz"),
         lines=loss_lines,

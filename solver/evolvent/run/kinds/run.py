@@ -37,6 +37,7 @@ from evolvent.run.output import facts_of, last_lines, write_fields_of
 from evolvent.run.progress import DEFORMATION, VIBRATION
 from evolvent.run.solved_pitches import companion_of
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.line_level import require_no_deformation
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import Skipped, one_mesh_reason, skipped, switched_off, wanted_output
@@ -77,9 +78,15 @@ class Run(Computation[SolvedRun]):
 
     name: ClassVar[str] = "run"
     command: ClassVar[str] = "run"
+    in_line_contact: ClassVar[bool] = True
     outputs: ClassVar[Outputs] = Outputs(
         TABLES, (OPERATION_PICTURE,), OPERATION_TABLES, (*STORED, "results/errors.npz", "results/wear.npz")
     )
+
+    def require_level(self) -> None:
+        """Raises SceneError where displacement and stress of the teeth are asked for in line contact."""
+        super().require_level()
+        require_no_deformation(self.scene.output, self.scene.mesh)
 
     def warnings(self) -> Iterator[str]:
         """Warnings on flanks and tips, and on a vibration that is taken out of its range."""

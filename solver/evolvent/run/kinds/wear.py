@@ -16,6 +16,7 @@ from evolvent.run.computation import Outputs, Results
 from evolvent.run.kept_pitch import STORED
 from evolvent.run.kinds.run import TABLES, Run, SolvedRun
 from evolvent.run.wear_run import wear_scene
+from evolvent.scene.line_level import require_resolved
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import wanted_output
 from evolvent.wear.results.archive import BLOCKS, FILE, VIBRATION
@@ -27,6 +28,7 @@ class Wear(Run):
     """A run of a scene whose flanks wear."""
 
     name: ClassVar[str] = "wear"
+    in_line_contact: ClassVar[bool] = False
     outputs: ClassVar[Outputs] = Outputs(
         (*TABLES, WEAR.name), (OPERATION_PICTURE,), (*OPERATION_TABLES, BLOCKS.name, VIBRATION.name),
         (FILE, *STORED, "results/errors.npz"),
@@ -36,6 +38,10 @@ class Wear(Run):
     def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
         """The wear of a scene with a section [wear]."""
         return cls(scene)
+
+    def require_level(self) -> None:
+        """Raises SceneError for line contact: wear needs the pressure across the contact."""
+        require_resolved(self.scene.mesh, "run with [wear]")
 
     def results(self, call: Call, solved: SolvedRun) -> Results:
         """Tables and pictures of the unworn pair, and of the finished study."""

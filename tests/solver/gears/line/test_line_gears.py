@@ -8,12 +8,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from evolvent.dynamics.excitation.loaded_mesh import EdgeContact, in_line_contact, loaded_mesh
+from evolvent.dynamics.excitation.loaded_mesh import in_line_contact, loaded_mesh
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.line.line_compliance import line_compliance
 from evolvent.gears.line.line_gap import nominal_arcs
 from evolvent.gears.line.line_gears import LineGears
-from evolvent.gears.line.line_result import LineResult, TooWide
+from evolvent.gears.line.line_result import EdgeContact, LineResult, TooWide
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.problem.gear_problem import MeshSettings
 from evolvent.scene.gear_problem import gear_problem

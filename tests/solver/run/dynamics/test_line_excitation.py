@@ -25,7 +25,7 @@ RELIEVED = tuple(
 )
 LINE = (*RELIEVED, "mesh.level=line", "sweep.positions=4", "output.error_bars=true")
 PERCENTS = [50.0, 100.0]
-SERVED = {"excitation", "dynamics", "design"}
+SERVED = {"run", "loads", "losses", "excitation", "dynamics", "design"}
 
 
 class Interrupted(BaseException):
@@ -112,7 +112,7 @@ def test_torques_that_edges_bear_are_left_out(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.name not in SERVED], ids=lambda kind: kind.name)
 def test_commands_that_resolve_the_contact_refuse_it(kind, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     """Status 2 before anything is written, with the commands that serve."""
-    with pytest.raises(SceneError, match="evolvent excitation, evolvent dynamics and evolvent design"):
+    with pytest.raises(SceneError, match="line serves evolvent run, loads, losses, excitation, dynamics and design"):
         quietly(small(kind, "mesh.level=line"), tmp_path / "out")
     assert not (tmp_path / "out").exists()
 

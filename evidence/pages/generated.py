@@ -10,7 +10,14 @@ from functools import partial
 from pathlib import Path
 
 from evidence import mutations
-from evidence.benchmarks.accuracy import face_load, line_contact, line_edges, transient_bar_costs, transient_bars
+from evidence.benchmarks.accuracy import (
+    face_load,
+    line_contact,
+    line_edges,
+    line_friction,
+    transient_bar_costs,
+    transient_bars,
+)
 from evidence.checkout import ROOT
 from evidence.pages import abilities, blow, outputs, promises, readme, tutorial
 from evidence.pages.papers import he, he_bodies, he_models, he_transient, yang, yang_fatigue, yang_transient, zhang
@@ -48,7 +55,9 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "checks.md": {"repeats": repeats.said(docs)},
         docs / "evidence.md": {"bars": bars, "face-load": face_load.table(docs)},
         docs / "edges.md": {"seen": mutations.table(root)},
-        docs / "line_contact.md": {"accuracy": line_contact.said(docs), "edges": line_edges.said(docs)},
+        docs / "line_contact.md": {
+            "accuracy": line_contact.said(docs), "friction": line_friction.said(docs), "edges": line_edges.said(docs),
+        },
         docs / "studies.md": {
             "keys": study_page.keys(), "figures": study_page.figures(), "measured": study_page.measured(docs),
         },

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from evolvent.scene.schema.bodies import Level, MeshSection
+from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
 from evolvent.scene.schema.output import ExactSection, OutputSection, SkipName
 
@@ -35,12 +36,21 @@ def line_conflict(mesh: MeshSection, exact: ExactSection) -> InputProblem | None
     return None
 
 
-def require_no_deformation(output: OutputSection, mesh: MeshSection) -> None:
-    """Raises SceneError where line contact is asked for displacement and stress of the teeth in contact, which needs
-    the pressure across it."""
-    if mesh.level == LINE and output.deformation:
+def require_runnable(mesh: MeshSection, output: OutputSection, dynamics: DynamicsSection | None) -> None:
+    """Raises SceneError where a run in line contact is asked for displacement and stress of the teeth in contact, which
+    need the pressure across it, or for the contact under the mesh force of a vibration."""
+    if mesh.level != LINE:
+        return
+    problems = []
+    if output.deformation:
         allowed = f'false at mesh.level = "{LINE}", which has no pressure across the contact'
-        raise SceneError([InputProblem("output.deformation", shown(True), allowed, "--level quick")])
+        problems.append(InputProblem("output.deformation", shown(True), allowed, "--level quick"))
+    if dynamics is not None and dynamics.operating_rpm is not None:
+        allowed = f'a constant torque at mesh.level = "{LINE}"'
+        remedy = "--level quick, or delete the key"
+        problems.append(InputProblem("dynamics.operating_rpm", shown(dynamics.operating_rpm), allowed, remedy))
+    if problems:
+        raise SceneError(problems)
 
 
 def require_resolved(mesh: MeshSection, command: str) -> None:

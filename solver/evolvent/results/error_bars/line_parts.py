@@ -20,6 +20,10 @@ PRESSURE_OFF = 1.5e-2
 """Part by which p_0 is off between the tip-edge zones."""
 LOSS_OFF = 5e-3
 """Part by which the friction loss is off."""
+RUBBING_VARIES, RUBBING_OFF = 2.5e-2, 1.5e-2
+"""Parts of the deflection by which the peak-to-peak transmission error and the mean deflection of a helical pair are
+off for each unit of the friction coefficient: its friction sticks behind the pitch point, and slides along the line where
+loads change."""
 
 
 def line_parts(run: RunData, index: int) -> FigureErrors:
@@ -30,13 +34,15 @@ def line_parts(run: RunData, index: int) -> FigureErrors:
     tangent, secant = (float(np.mean([of(run, each) for each in solved])) for of in (mesh_stiffness, secant_stiffness))
     results = [each.result for each in solved]
     loss = sum(result.friction_loss for result in results) / sum(result.torques[0] for result in results)
+    rubbing = results[0].friction if run.pair.pinion.base_helix_angle else 0.0
     curve = engagement(run, index, run.inner_path)
     return FigureErrors(
         max_pressure_MPa=PRESSURE_OFF * curve.peak.pressure,
         mean_pressure_MPa=PRESSURE_OFF * curve.whole_mean,
-        transmission_error_peak_to_peak_um=max(ERROR_VARIES * float(np.ptp(errors)), ERROR_LEAST * deflection),
+        transmission_error_peak_to_peak_um=max(ERROR_VARIES * float(np.ptp(errors)), ERROR_LEAST * deflection)
+        + RUBBING_VARIES * rubbing * deflection,
         mesh_stiffness_N_per_mm_um=TANGENT_OFF * tangent,
-        secant_stiffness_N_per_mm_um=SECANT_OFF * secant,
+        secant_stiffness_N_per_mm_um=(SECANT_OFF + RUBBING_OFF * rubbing) * secant,
         loss_percent=100.0 * LOSS_OFF * loss,
         face_load_factor=0.0 if run.plane else FACE_LOAD_OFF * face_load(run, index).factor(),
     )

@@ -37,7 +37,7 @@ from evolvent.run.output import facts_of, last_lines, write_fields_of
 from evolvent.run.progress import DEFORMATION, VIBRATION
 from evolvent.run.solved_pitches import companion_of
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.line_level import require_no_deformation
+from evolvent.scene.line_level import require_runnable
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import Skipped, one_mesh_reason, skipped, switched_off, wanted_output
@@ -84,9 +84,9 @@ class Run(Computation[SolvedRun]):
     )
 
     def require_level(self) -> None:
-        """Raises SceneError where displacement and stress of the teeth are asked for in line contact."""
+        """Raises SceneError where the scene asks for more than a line contact has."""
         super().require_level()
-        require_no_deformation(self.scene.output, self.scene.mesh)
+        require_runnable(self.scene.mesh, self.scene.output, self.scene.dynamics)
 
     def warnings(self) -> Iterator[str]:
         """Warnings on flanks and tips, and on a vibration that is taken out of its range."""

@@ -10,12 +10,13 @@ from evolvent.gears.line.line_gears import LineGears
 from evolvent.gears.line.line_points import line_points
 from evolvent.gears.line.line_result import LineResult
 from evolvent.gears.pressure.contact_slices import fitted_peak
+from evolvent_meshes.arrays import Floats
 from tests.solver.gears.line.test_line_friction import helical, spur
 
 ANGLE, FRICTION = 0.04, 0.1
 
 
-def heights(gears: LineGears) -> np.ndarray:
+def heights(gears: LineGears) -> Floats:
     return gears.gears[0].heights[::2]
 
 

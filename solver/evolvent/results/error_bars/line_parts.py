@@ -22,7 +22,7 @@ LOSS_OFF = 5e-3
 """Part by which the friction loss is off."""
 RUBBING_VARIES, RUBBING_OFF = 2.5e-2, 1.5e-2
 """Parts of the deflection by which the peak-to-peak transmission error and the mean deflection of a helical pair are
-off for each unit of the friction coefficient: its friction sticks behind the pitch point, and slides along the line where
+off for each unit of the friction coefficient: friction sticks behind the pitch point, and slides along the line where
 loads change."""
 
 

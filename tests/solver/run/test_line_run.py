@@ -116,6 +116,7 @@ def test_results_do_not_depend_on_ranks(whole: Path, tmp_path: Path, run_script:
     assert same_tables(tmp_path / "ranks", whole)
 
 
+@pytest.mark.slow
 def test_pressures_that_are_none_of_a_line_contact_are_not_given(tmp_path: Path) -> None:
     """Problem: linear reliefs, whose start some contacts cover. There kink_pressure_MPa is nan, and 0 elsewhere; no
     file of fields, no animation, no picture of the flank or of Hertz' formula, and cells across the contact are null.
@@ -135,6 +136,7 @@ def test_pressures_that_are_none_of_a_line_contact_are_not_given(tmp_path: Path)
     assert redrawn(tmp_path, tmp_path.parent / f"{tmp_path.name}_again") == pictures
 
 
+@pytest.mark.slow
 def test_helical_run_has_its_load_over_the_face(tmp_path: Path) -> None:
     """Problem: a narrow helical pair with 10 µm of misalignment. K_Hβ is above 1, the axial force that of the helix,
     F_t tan β within 1 %, and loss is in proportion to μ within 5 %."""

@@ -76,6 +76,8 @@ def test_run_is_within_its_error_bars_of_the_resolved_one(whole: Path, tmp_path:
             for name in ("tangential_N", "radial_N"):
                 assert line[gear][name] == pytest.approx(fine[gear][name], rel=1e-2)  # type: ignore[index]
         assert line["balance_error"] < 1e-9
+    method = json.loads((whole / "summary.json").read_text(encoding="utf-8"))["estimated_error"]["method"]
+    assert "what line contact is off by" in method
 
 
 def test_interrupted_run_solves_nothing_again(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

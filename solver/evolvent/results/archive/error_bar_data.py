@@ -19,6 +19,8 @@ METHOD = (
     "flanks have levels, what the reach of their patches leaves out is not in it (docs/two_level.md)"
 )
 """Method of the error bars, as summary.json names it; bars archived with another method are estimated anew."""
+LINE_METHOD = f"{METHOD}; plus what line contact is off by beside the resolved contact (docs/line_contact.md)"
+"""Method of the error bars in line contact."""
 FILE = "results/errors.npz"
 FINER = 3
 """Largest number of additional decimals with which `plus_minus` prints."""
@@ -88,7 +90,7 @@ def read_error_bars(archive: Archive) -> EstimatedErrors | None:
 def _errors(arrays: Arrays) -> EstimatedErrors | None:
     """Archived error bars; None where they were estimated with another method, or of other figures."""
     method, values = str(arrays["method"]), arrays["values"]
-    if method != METHOD or values.shape[1] != len(fields(FigureErrors)):
+    if method not in (METHOD, LINE_METHOD) or values.shape[1] != len(fields(FigureErrors)):
         return None
     return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in values), method, "")
 

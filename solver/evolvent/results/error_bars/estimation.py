@@ -29,6 +29,7 @@ import numpy as np
 
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.error_bar_data import (
+    LINE_METHOD,
     METHOD,
     EstimatedErrors,
     FigureErrors,
@@ -76,7 +77,8 @@ def estimated_errors(run: RunData, companion: Companion) -> EstimatedErrors:
         parts = [(errors, spacing_errors(run, k)) for k, errors in enumerate(mesh)]
         sums = [summed_errors(*each) for each in parts]
         if run.is_line:
-            sums = [summed_errors(errors, line_parts(run, k)) for k, errors in enumerate(sums)]
+            more = tuple(summed_errors(errors, line_parts(run, k)) for k, errors in enumerate(sums))
+            return EstimatedErrors(more, LINE_METHOD, "")
         return EstimatedErrors(tuple(sums), METHOD, "")
     except (ValueError, IndexError) as error:  # a companion without these figures, as without any contact
         return EstimatedErrors(missing=f"The coarse companion's figures cannot be compared: {error}")

@@ -35,7 +35,7 @@ def line_parts(run: RunData, index: int) -> FigureErrors:
     results = [each.result for each in solved]
     loss = sum(result.friction_loss for result in results) / sum(result.torques[0] for result in results)
     rubbing = results[0].friction if run.pair.pinion.base_helix_angle else 0.0
-    curve = engagement(run, index, run.inner_path)
+    curve = engagement(run, index)
     return FigureErrors(
         max_pressure_MPa=PRESSURE_OFF * curve.peak.pressure,
         mean_pressure_MPa=PRESSURE_OFF * curve.whole_mean,

@@ -8,11 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.gears.line.line_gears import LineGears
-from evolvent.gears.line.line_result import FACE_LOAD_OFF, LineResult
+from evolvent.gears.line.line_result import FACE_LOAD_OFF, PRESSURE_OFF, LineResult
 from evolvent_meshes.arrays import Floats
-
-PRESSURE_OFF = 2e-2
-"""Part by which the largest p_0 of a line contact is off beside the error of its meshes (docs/line_contact.md)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,8 @@ from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
-FACE_LOAD_OFF = 1e-2
-"""Part by which K_Hβ of a line contact is off beside the error of its meshes (docs/line_contact.md)."""
+FACE_LOAD_OFF, PRESSURE_OFF = 1e-2, 2e-2
+"""Parts by which K_Hβ and p_0 of a line contact are off beside the error of its meshes (docs/line_contact.md)."""
 MOST_TOO_WIDE = 1e-2
 """Largest part of the load whose contact may be too wide for the half-ellipse."""
 

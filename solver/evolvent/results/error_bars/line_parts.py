@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from evolvent.gears.line.line_result import FACE_LOAD_OFF
+from evolvent.gears.line.line_result import FACE_LOAD_OFF, PRESSURE_OFF
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.engagement import engagement
 from evolvent.results.face_load import face_load
@@ -16,8 +16,6 @@ ERROR_VARIES, ERROR_LEAST = 6e-3, 1e-3
 """Part by which the peak-to-peak transmission error is off, and the least error of it, over the mean deflection."""
 TANGENT_OFF, SECANT_OFF = 5e-3, 2e-3
 """Parts by which mean stiffnesses are off."""
-PRESSURE_OFF = 1.5e-2
-"""Part by which p_0 is off between the tip-edge zones."""
 LOSS_OFF = 5e-3
 """Part by which the friction loss is off."""
 RUBBING_VARIES, RUBBING_OFF = 2.5e-2, 1.5e-2

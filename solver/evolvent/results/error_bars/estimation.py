@@ -92,7 +92,8 @@ def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
 
 def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
     """Errors of the mesh at the friction coefficient with this index."""
-    runs = run, with_hertz(run), with_line_loads(run), with_line_loads(coarse)
+    hertz = run if run.is_line else with_hertz(run)  # there pressures are Hertz', with the curvatures of exact flanks
+    runs = run, hertz, with_line_loads(run), with_line_loads(coarse)
     curves = [engagement(each, index, run.inner_path) for each in runs]
     stiffness, factor = STIFFNESS[run.scene.mesh.order], SHARING[run.scene.mesh.order]
 

@@ -57,12 +57,12 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.line": (
-        "meshes", "meshes.gears", "fem", "fem.parallel", "contact", "contact.newton", "gears.ring", "gears.two_level",
-        "gears", "gears.contact", "gears.sweep", "gears.pressure",
+        "meshes", "meshes.gears", "fem", "fem.parallel", "contact", "contact.newton", "gears.problem", "gears.ring",
+        "gears.two_level", "gears", "gears.contact", "gears.sweep", "gears.pressure",
     ),
     "gears.solution": (
         "meshes", "meshes.gears", "fem.backend", "contact.problem", "gears.problem", "gears.meshing", "gears",
-        "gears.sweep",
+        "gears.sweep", "gears.line",
     ),
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "meshes.gears.modifications", "scene.schema.guesses"),

@@ -17,6 +17,7 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.gear_load import GearLoad, gear_load
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, is_two_level, run_mesh
+from evolvent.gears.position_start import PositionStart
 from evolvent.gears.problem.flank_deviations import FlankCharts
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level_pair import two_level_pair
@@ -27,6 +28,9 @@ Mesher = Callable[[GearProblem, Member], SectorMesh]
 """Function that makes the sector mesh of the pinion or the wheel; with levels, the gear is condensed in levels."""
 Preparer = Callable[..., "Preparation"]
 """A function with the parameters of `prepare_model`."""
+PositionStarts = Callable[["GearModel", float], PositionStart | None]
+"""Function from gears under a load and a rotation of the pinion [rad] to the start of a position; None where it has
+none."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,8 @@ class GearModel:
     """Number of angular pitches of a sweep."""
     charts: FlankCharts = (None, None)
     """Deviations of the flanks of pinion and wheel, which `bodies` have at their nodes; None: as designed."""
+    starts: PositionStarts | None = None
+    """Makes starts of positions; None: positions start from those before."""
 
     @property
     def is_line(self) -> bool:

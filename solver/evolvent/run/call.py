@@ -15,6 +15,7 @@ from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Mesher, Preparation, Preparer, prepare_model
+from evolvent.gears.line.line_start import with_line_starts
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.archive import Archive
@@ -108,7 +109,7 @@ class Call:
             self.progress.stage(MESHING)
         made: Preparation = self.options.prepare(problem, self.comm, mesh, meshed)
         self.log.info("meshed in %.1f s, condensed in %.1f s", made.mesh_seconds, made.seconds)
-        return made
+        return replace(made, model=with_line_starts(made.model))
 
     def companion(self, scene: Scene, solve: Callable[[], T]) -> Attempt[T]:
         """Outcome of solving the coarse companion, where the scene asks for error bars, see `attempted`. Collective."""

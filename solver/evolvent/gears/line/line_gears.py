@@ -126,6 +126,8 @@ class LineGears:
     """Contact modulus E* [MPa]."""
     free: Member
     """Gear that turns under its torque."""
+    least_half_width: float = 0.0
+    """Least half-width w of the half-ellipse away from the ends of flanks [mm]."""
 
     @staticmethod
     def of(model: GearModel, friction: bool = False) -> LineGears:
@@ -170,7 +172,8 @@ class LineGears:
     @property
     def half_width(self) -> float:
         """Half-width w of the half-ellipse [mm]."""
-        return ROWS * float(max(np.diff(gear.arcs[::2]).mean() for gear in self.gears))
+        carried = ROWS * float(max(np.diff(gear.arcs[::2]).mean() for gear in self.gears))
+        return max(carried, self.least_half_width)
 
     def position(self, angle: float) -> LinePosition:
         """The gears at a rotation of the pinion [rad]."""

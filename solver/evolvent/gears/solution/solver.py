@@ -13,6 +13,7 @@ from mpi4py import MPI
 from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.line.line_start import with_line_starts
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.problem.load_limits import check_load
 from evolvent.gears.solution.certificates import certify
@@ -48,7 +49,7 @@ def condense(problem: GearProblem, comm: MPI.Comm = MPI.COMM_WORLD) -> GearModel
     if comm.rank == 0:
         _warn_of_charts(problem)
     dolfinx_compat.silence_logs()
-    return prepare_model(problem, comm).model
+    return with_line_starts(prepare_model(problem, comm).model)
 
 
 def solve_single_position(gears: GearModel, angle: float, friction: float = 0.0) -> PositionResult:

@@ -24,6 +24,7 @@ from evolvent.gears.contact.pair_contact import GearContact, gear_contact
 from evolvent.gears.contact.tangent_stiffness import tangent_stiffness
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
+from evolvent.gears.position_start import PositionStart
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent_meshes.arrays import Bools
 from evolvent_meshes.gears.member import Member
@@ -40,6 +41,8 @@ NEAREST_AGAIN = 1.2
 two neighbouring places, so that each can send it to the other one."""
 FIRST_CONTACT = 0.25
 """Fraction of the window that is assumed to press at first; Newton's method needs fewer steps from too few points."""
+WIDENED = 1.5
+"""Factor by which a window is widened that the contact does not fit into."""
 ROUNDS = 8
 START = 1e-5
 """Residual, over the load, of a frictionless state that is no result: friction starts from it, and the flanks are
@@ -142,9 +145,10 @@ def shared_position(
     """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
     angle: of the pinion [rad].
-    beyond_nominal: predicted rotations beyond the nominal ones [rad].
+    beyond_nominal: predicted rotations beyond the nominal ones [rad], for positions that the model has no start of.
     frictions: the coefficients to come; without one that is not 0 only normal components are condensed.
-    before: the contact patch of the last position, None where there is none.
+    before: the contact patch of the last position, None where there is none; it is not needed where the model has a
+        start of the position.
     threads: in which compliances are put together.
     known: how it was solved before, None where it was not; it replaces beyond_nominal and before.
 
@@ -153,9 +157,10 @@ def shared_position(
     Raises NotConverged, SearchError.
     """
     normal_only, tolerance = not any(map(model.has_friction_terms, frictions)), _tolerance(model, frictions, exact)
-    stand, half_width = _at_a_multiple(model, PairRotation(model.pair, angle, beyond_nominal)), model.half_width
-    if known is not None:
-        stand, half_width = PairRotation(model.pair, angle, known.searched.beyond_nominal), known.searched.half_width
+    guess = _guess(model, angle, before) if known is None else None
+    first = known.searched if known is not None else _first_search(model, angle, beyond_nominal, guess)
+    stand, half_width = PairRotation(model.pair, angle, first.beyond_nominal), first.half_width
+    last: tuple[ContactGeometry, InitialGuess] | None = None
     been = set() if known is None else {known.searched.beyond_nominal}
     for _ in range(ROUNDS):
         nearest = NEAREST_AGAIN if stand.beyond_nominal in been else NEAREST
@@ -167,11 +172,9 @@ def shared_position(
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.at(angle), normal_only, threads)
-        if known is None:
-            start = _initially_pressed(contact.geometry, before)
-            smooth = frictionless(normal_part(system), start, tolerance=tolerance)
-        else:
-            smooth = frictionless(normal_part(system), near=known.smooth, tolerance=tolerance)
+        near = known.smooth if known is not None else _on_same_nodes(last, contact.geometry)
+        pressed = _initially_pressed(contact.geometry, before, guess) if near is None else None
+        smooth = frictionless(normal_part(system), pressed, near, tolerance)
         shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(
@@ -179,17 +182,50 @@ def shared_position(
                 "more, too much for small strain: lower the torque"
             )
         if contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0):
-            half_width *= 1.5
+            half_width *= WIDENED
         elif abs(shift) <= nearest * RELOCATE * model.pair.pinion.normal_module:
             unsearched = unsearched_overlaps(contact.geometry, model.teeth)
             if overlap_outside(contact, unsearched, smooth.force, free_rotation(model, smooth)) == 0.0:
                 return SharedPosition(contact, system, smooth, unsearched)
             half_width = np.inf
-        stand = _at_a_multiple(model, stand.turned(model.load.on, float(smooth.motion[0])))
-        before, known = ContactPatch.of(contact.geometry, smooth.traction[:, 0]), None
+        there, on = stand, model.load.on
+        stand = _at_a_multiple(model, there.turned(on, float(smooth.motion[0])))
+        turned = stand.beyond_nominal[on] - there.beyond_nominal[on]
+        last = contact.geometry, InitialGuess(smooth.force, smooth.motion - turned)
+        before, known, guess = ContactPatch.of(contact.geometry, smooth.traction[:, 0]), None, None
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )
+
+
+def _guess(model: GearModel, angle: float, before: ContactPatch | None) -> PositionStart | None:
+    """Start of a position without the one before; None where it has none. In the plane it takes half as long as a
+    position, more than it saves where there is one before."""
+    if model.starts is None or (before is not None and model.bodies[Member.PINION].d == 2):
+        return None
+    return model.starts(model, angle)
+
+
+def _first_search(
+    model: GearModel, angle: float, beyond_nominal: tuple[float, float], guess: PositionStart | None
+) -> SearchedAt:
+    """Where a position is searched at first: at its guess or, without one, at predicted rotations [rad]."""
+    half_width = model.half_width
+    if guess is not None:
+        beyond_nominal = guess.beyond_nominal
+        while half_width < guess.reach:
+            half_width *= WIDENED
+    stand = _at_a_multiple(model, PairRotation(model.pair, angle, beyond_nominal))
+    return SearchedAt(angle, stand.beyond_nominal, half_width)
+
+
+def _on_same_nodes(
+    last: tuple[ContactGeometry, InitialGuess] | None, geometry: ContactGeometry
+) -> InitialGuess | None:
+    """Equilibrium of the last search of a position, as seen from this one, where its nodes are the same."""
+    if last is None or not np.array_equal(last[0].node, geometry.node):
+        return None
+    return last[1] if np.array_equal(last[0].tooth, geometry.tooth) else None
 
 
 def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float]) -> SharedPosition:
@@ -233,10 +269,15 @@ def _at_a_multiple(model: GearModel, stand: PairRotation) -> PairRotation:
     return stand.turned(on, float(np.round(stand.beyond_nominal[on] / step)) * step - stand.beyond_nominal[on])
 
 
-def _initially_pressed(geometry: ContactGeometry, before: ContactPatch | None) -> Bools:
-    """Points that are assumed to press at first, (q,) bool: those in the last position's contact patch. Without one, or
-    where it has none of them, those near the contact lines."""
+def _initially_pressed(
+    geometry: ContactGeometry, before: ContactPatch | None, guess: PositionStart | None = None
+) -> Bools:
+    """Points that are assumed to press at first, (q,) bool: those of the guess, else those in the last position's
+    contact patch. Without either, or where it has none of them, those near the contact lines."""
     pressed = None if before is None else before.at(geometry)
+    if guess is not None:
+        z = geometry.operator.shape @ geometry.bodies[Member.PINION].z[geometry.node]
+        pressed = guess.pressed(geometry.point_tooth, z, geometry.across)
     if pressed is not None and pressed.any():
         return pressed
     # on a coarse mesh the contact line may lie between two rows of points: then the nearest ones

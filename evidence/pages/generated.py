@@ -15,6 +15,7 @@ from evidence.benchmarks.accuracy import (
     line_contact,
     line_edges,
     line_friction,
+    line_starts,
     transient_bar_costs,
     transient_bars,
 )
@@ -57,6 +58,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "line_contact.md": {
             "accuracy": line_contact.said(docs), "friction": line_friction.said(docs), "edges": line_edges.said(docs),
+            "starts": line_starts.said(docs),
         },
         docs / "studies.md": {
             "keys": study_page.keys(), "figures": study_page.figures(), "measured": study_page.measured(docs),

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from evolvent.contact.newton.equilibrium import Equilibrium, frictionless
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import position_search
@@ -74,6 +77,30 @@ def test_contact_patch_that_has_moved_away_gives_the_same_equilibrium(spur: Gear
     found, wanted = (shared_position(spur, 0.01, (0.0, 0.0), [0.0], before) for before in (nothing, None))
     assert found.smooth.motion == pytest.approx(wanted.smooth.motion, abs=1e-14)
     assert found.contact.stand.beyond_nominal == pytest.approx(wanted.contact.stand.beyond_nominal, rel=1e-10)
+
+
+def test_further_search_starts_from_the_forces_of_the_one_before(
+    spur: GearModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A position that is searched a second time has the same nodes: it starts from the forces of the first search, with
+    a guess of the motion that is the solution's to 1 % of the turn between both. In a wider window there are other
+    nodes, and it starts from the contact patch."""
+    turn, found = 2.0 * position_search.RELOCATE * spur.pair.pinion.normal_module / spur.base_radius, []
+
+    def recorded(*arguments: Any, **options: Any) -> Equilibrium:
+        found.append((arguments[2], frictionless(*arguments, **options)))
+        return found[-1][1]
+
+    monkeypatch.setattr(position_search, "frictionless", recorded)
+    shared_position(spur, ANGLE, (1e-4, 0.0), [0.0], None)
+    (first, _), *again = found
+    assert first is None and again
+    for near, solution in again:
+        assert near is not None
+        assert near.motion == pytest.approx(solution.motion, abs=0.01 * turn)
+    found.clear()
+    shared_position(replace(spur, half_width=0.5 * spur.half_width), ANGLE, (0.0, 0.0), [0.0], None)
+    assert found[1][0] is None
 
 
 def test_frictionless_state_is_the_same_from_the_last_position_and_from_none(spur: GearModel) -> None:

@@ -51,6 +51,8 @@ transmission error of He's pair is 0.5 to 1.3 % low."""
 ALL = (
     case("He, plane", SPUR, (5.0, 30.0, 100.0), *relieved(20.0), *FINE),
     case("He, linear relief, plane", SPUR, (5.0, 30.0, 100.0), *relieved(20.0, "linear"), *FINE),
+    case("He, short relief, plane", SPUR, (10.0, 50.0, 100.0), *relieved(40.0, "linear"),
+         "pinion.tip_relief_start_diameter_mm=154.5", "wheel.tip_relief_start_diameter_mm=154.5", *FINE),
     case("He, lead crowning", SPUR, (60.0, 100.0), *relieved(20.0), "pinion.lead_crowning_um=5"),
     case("tutorial, 24/72", ROOT / FIRST, (15.0, 50.0, 90.0), *relieved(40.0)),
     case("tutorial, linear relief", ROOT / FIRST, (15.0, 50.0, 90.0), *relieved(40.0, "linear")),

@@ -7,6 +7,7 @@ all the same.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -20,8 +21,15 @@ from evolvent.gears.contact.tooth_contact import PENETRATION
 from evolvent.gears.kinematics import spin
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.pair import GearPair
 
 NEARLY = 5e-3  # modules: flanks so far apart may overlap once the gears have turned on, see worn_position.STALE
+
+WITHIN_WINDOW = 0.5
+"""Distance by which modifications may move the contact, over the half-width of the window; the rest is its own width.
+"""
+PLACES = 200
+"""Places along the profile at which slopes of modifications are looked at."""
 
 FlankPoints = tuple[Surface, Ints, Floats]
 """Points of a flank: its surface, the facets (q,), the reference coordinates (q, d−1)."""
@@ -60,7 +68,8 @@ def unsearched_overlaps(geometry: ContactGeometry, teeth: tuple[int, ...]) -> tu
 
     Only flanks that overlap undeformed are checked, or that a rotation of up to NEARLY can bring to overlap: loaded
     teeth deflect, so that flanks apart from the contact move away from each other. And only slices whose contact line
-    is off the path of contact: on it conjugate flanks are closest in the window. Raises SearchError.
+    is off the path of contact: on it conjugate flanks are closest in the window, unless modifications are so steep that
+    they move the contact out of it. Raises SearchError.
     """
     overlaps, module = [], geometry.bodies[Member.PINION].gear.normal_module
     for tooth in teeth:
@@ -103,11 +112,14 @@ def _rotated(geometry: ContactGeometry, gear: Member, angle: float, points: Flan
 
 
 def _unsearched_facets(geometry: ContactGeometry, tooth: int) -> Ints:
-    """The pinion's facets in slices off the path of contact that the window leaves out."""
+    """The pinion's facets that the window leaves out: in slices off the path of contact, and as far beside the window
+    as steep modifications may move the contact."""
     pinion, stand = geometry.bodies[Member.PINION], geometry.stand
     start, end = stand.pair.path_of_contact
     ξ = stand.roll_distance(tooth, pinion.z)
     off = ((ξ < start) | (ξ > end))[pinion.flank.facets].any(axis=1)
+    if (moved := farthest_moved(stand.pair)) > WITHIN_WINDOW * geometry.half_width:
+        off |= facets_in_window(pinion, stand, tooth, geometry.half_width + moved)
     return np.flatnonzero(off & ~facets_in_window(pinion, stand, tooth, geometry.half_width))
 
 
@@ -121,3 +133,16 @@ def _deflection(geometry: ContactGeometry, gear: Member, tooth: int, forces: Flo
     u = u @ geometry.stand.rotation(gear, geometry.d).T
     N = tabulate(surface.shape, surface.order, xi)[0]
     return np.einsum("qk,qka->qa", N, u[place.reshape(N.shape)])
+
+
+@lru_cache(maxsize=16)
+def farthest_moved(pair: GearPair) -> float:
+    """Largest distance [mm of profile arc] by which flank modifications move the contact from the line of flanks
+    without: the slope of a modification along the profile times the relative radius of curvature."""
+    ξ = np.linspace(*pair.path_of_contact, PLACES)
+    radius, moved = pair.relative_curvature_radius(ξ), 0.0
+    for member, gear, pitch_point in zip(Member, pair.gears, pair.pitch_point_roll_lengths):
+        roll, half = pitch_point + member.sign * ξ, 0.5 * gear.face_width
+        slopes = gear.flank_depth.slopes(roll[:, None], np.array([[-half, 0.0, half]]))[0]
+        moved += float(np.max(np.abs(slopes) * (radius * gear.base_radius / roll)[:, None]))
+    return moved

@@ -24,10 +24,14 @@ POINTS = 32
 """Points of the mean over the interval: Chebyshev's, at which its weights are equal."""
 SAMPLES, REACH = 65, 2.2
 """Samples of the gap about the vertex, and how far they reach, in half-widths of the flanks without modifications."""
-STEPS, DIFFERENCE = 10, 0.05
-"""Newton steps, and the difference for second derivatives, in half-widths: the kink is smooth over it."""
-DAMPED = 0.6
-"""Part of a Newton step that is taken: over a kink at the end of the interval whole ones go to and fro."""
+STEPS, DIFFERENCE = 8, 0.05
+"""Newton steps, and the difference for derivatives, in half-widths: the kink is smooth over it."""
+PARTS = (0.0, 0.125, 0.25, 0.5, 1.0)
+"""Parts of a Newton step of which that with the least value is taken: over a kink whole ones go to and fro."""
+FLATTEST, NEARLY = 0.1, 0.95
+"""Least second derivative by the middle, over c q/b², and largest mixed one, over that of a valley."""
+LEAST = 1e-3
+"""Least load, over the largest one, under which a contact is looked at."""
 PROBED, STRAIGHT = (-1.1, -0.7, -0.3, 0.3, 0.7, 1.1), 0.01
 """Distances from the vertex at which the gap is compared with the fitted parabola, in half-widths, and the difference
 from which on it is none, over what the parabola rises within a half-width."""
@@ -66,19 +70,24 @@ class SampledGap:
         return np.asarray((low + s * (high - low) + s * (s - 1.0) * bend).mean(axis=1))
 
 
-def with_kinks(profile: GapProfile, gap: LineGap, load: Floats, half_width: Floats, modulus: float) -> LineGap:
+def with_kinks(
+    profile: GapProfile, gap: LineGap, vertex: Floats, load: Floats, half_width: Floats, modulus: float
+) -> LineGap:
     """The least gap with what stands for a contact whose gap is no parabola over its width.
 
-    gap: as fitted by parabolas over the width. load: (p,) per length at the points [N/mm]. half_width: (p,) of the
-    contact without modifications [mm]. modulus: E* [MPa].
+    gap: as fitted by parabolas over the width.
+    vertex: (p,) where it is least without load [mm].
+    load: (p,) per length at the points [N/mm].
+    half_width: (p,) of the contact without modifications [mm].
+    modulus: E* [MPa].
     """
-    rows = np.flatnonzero((load > 0.0) & ~gap.edge)
-    rows = rows[_bent(profile, gap, half_width, rows)]
+    rows = np.flatnonzero((load > LEAST * load.max()) & ~gap.edge)
+    rows = rows[_bent(profile, gap, half_width, rows) | (np.abs(gap.shift - vertex)[rows] > half_width[rows])]
     if not rows.size:
         return gap
     c = 2.0 / (np.pi * modulus)
-    samples = SampledGap.of(lambda places: profile.across(places, rows), gap.shift[rows], half_width[rows])
-    found, m, b = equal_hertz(samples, np.sqrt(2.0 * c * load * gap.radius)[rows], load[rows], c)
+    samples = SampledGap.of(lambda places: profile.across(places, rows), vertex[rows], half_width[rows])
+    found, m, b = equal_hertz(samples, half_width[rows], load[rows], c)
     own, place, radius = gap.gap.copy(), gap.shift.copy(), gap.radius.copy()
     own[rows], place[rows], radius[rows] = found, m, b**2 / (2.0 * c * load[rows])
     return LineGap(own, place, radius, gap.edge)
@@ -99,14 +108,22 @@ def equal_hertz(gap: SampledGap, half_width: Floats, load: Floats, c: float) -> 
     half_width: b (k,) from which the search starts [mm]; it starts at the middle of the samples.
     load: q (k,) per length [N/mm]. c: 2/(π E*) [1/MPa].
     """
-    m, b, h = gap.middle, half_width, DIFFERENCE * half_width
-    ends = (-1, 0, 1)
+    m, b, ends = gap.middle, half_width, (-1, 0, 1)
+
+    def approach(m: Floats, b: Floats) -> Floats:
+        return gap.mean(m, b) - c * load * np.log(b)
+
     for _ in range(STEPS):
+        h, unit = DIFFERENCE * b, c * load / b**2
         Ḡ = {(i, j): gap.mean(m + i * h, b + j * h) for i in ends for j in ends}
-        by_m, by_b = (Ḡ[1, 0] - Ḡ[-1, 0]) / (2.0 * h), (Ḡ[0, 1] - Ḡ[0, -1]) / (2.0 * h) - c * load / b
-        mm = (Ḡ[-1, 0] - 2.0 * Ḡ[0, 0] + Ḡ[1, 0]) / h**2
-        bb = (Ḡ[0, -1] - 2.0 * Ḡ[0, 0] + Ḡ[0, 1]) / h**2 + c * load / b**2
+        by_m, by_b = (Ḡ[1, 0] - Ḡ[-1, 0]) / (2.0 * h), (Ḡ[0, 1] - Ḡ[0, -1]) / (2.0 * h) - unit * b
+        mm = np.maximum((Ḡ[-1, 0] - 2.0 * Ḡ[0, 0] + Ḡ[1, 0]) / h**2, FLATTEST * unit)
+        bb = np.maximum((Ḡ[0, -1] - 2.0 * Ḡ[0, 0] + Ḡ[0, 1]) / h**2, 0.0) + unit
         mb = (Ḡ[1, 1] - Ḡ[1, -1] - Ḡ[-1, 1] + Ḡ[-1, -1]) / (4.0 * h**2)
+        mb = np.clip(mb, -NEARLY * np.sqrt(mm * bb), NEARLY * np.sqrt(mm * bb))
         steps = (mb * by_b - bb * by_m) / (mm * bb - mb**2), (mb * by_m - mm * by_b) / (mm * bb - mb**2)
-        m, b = (value + DAMPED * np.clip(step, -FARTHEST * b, FARTHEST * b) for value, step in zip((m, b), steps))
+        m_step, b_step = (np.clip(step, -FARTHEST * b, FARTHEST * b) for step in steps)
+        tried = np.array([approach(m + part * m_step, b + part * b_step) for part in PARTS])
+        part = np.array(PARTS)[tried.argmin(axis=0)]
+        m, b = m + part * m_step, b + part * b_step
     return gap.mean(m, b) - 0.5 * c * load, m, b

@@ -83,7 +83,7 @@ class LinePosition:
         for _ in range(FITS):
             gap = self.profile.fitted(gap.shift, reach)
         nominal = np.asarray(line_half_width(at_points, self.profile.radius, modulus))
-        gap = with_kinks(self.profile, gap, at_points, nominal, modulus)
+        gap = with_kinks(self.profile, gap, self.gap.shift, at_points, nominal, modulus)
         return replace(self, gap=gap, system=replace(self.system, gap=mean(gap.gap), radius=mean(gap.radius)))
 
     def on_edges(self, load: Floats) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.contact.hertz import line_peak_pressure
+from evolvent.contact.hertz import line_half_width, line_peak_pressure
 from evolvent.gears.line.line_equilibrium import WIDEST, LineEquilibrium, line_equilibrium
 from evolvent.gears.line.line_gears import LinePosition
 from evolvent.gears.pressure.relief_starts import ContactWidth, covering, kinks
@@ -113,8 +113,9 @@ class LineResult:
         """Largest p_0 [MPa] of stations that neither bear on the edge of a tip nor cover the start of a linear relief,
         whose pressure is not Hertz'; 0 where none is left."""
         position, load = self.position, self.equilibrium.load
-        half, ξ = position.half_width(load), position.stations.roll_distance
-        contact = ContactWidth(ξ, half, position.gap.radius, np.zeros((len(ξ), 2)))
+        ξ, radius = position.stations.roll_distance, position.profile.radius  # over a kink the fitted one is another
+        half = np.asarray(line_half_width(position.at_points(load), radius, position.system.modulus))
+        contact = ContactWidth(ξ, half, radius, np.zeros((len(ξ), 2)))
         other = position.bears_on_edge(load) | covering(kinks(pair), contact)
         return float(np.where(position.stations.mean(other.astype(float)) > 0.0, 0.0, self.peak_pressure).max())
 

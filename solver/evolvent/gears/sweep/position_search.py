@@ -7,10 +7,10 @@ coefficients share its results.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -172,9 +172,9 @@ def shared_position(
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.at(angle), normal_only, threads)
+        pressed = partial(_initially_pressed, contact.geometry, before, guess)
         near = known.smooth if known is not None else _on_same_nodes(last, contact.geometry)
-        pressed = _initially_pressed(contact.geometry, before, guess) if near is None else None
-        smooth = frictionless(normal_part(system), pressed, near, tolerance)
+        smooth = _near_or_pressed(normal_part(system), near, pressed, tolerance)
         shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(
@@ -196,6 +196,17 @@ def shared_position(
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )
+
+
+def _near_or_pressed(
+    system: CondensedSystem, near: InitialGuess | None, pressed: Callable[[], Bools], tolerance: float
+) -> Equilibrium:
+    """Equilibrium near another one; where there is none, or where flanks have turned too far for Newton's method, from
+    points that are assumed to press. Raises NotConverged."""
+    if near is not None:
+        with suppress(NotConverged):
+            return frictionless(system, near=near, tolerance=tolerance)
+    return frictionless(system, pressed(), tolerance=tolerance)
 
 
 def _guess(model: GearModel, angle: float, before: ContactPatch | None) -> PositionStart | None:

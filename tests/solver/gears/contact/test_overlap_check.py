@@ -10,13 +10,13 @@ import pytest
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.contact import pair_contact, tooth_contact
-from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
+from evolvent.gears.contact.overlap_check import farthest_moved, overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep import position_search
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
-from tests.support.gear_cases import helical_scene, model_of
+from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
 DEEP = 277  # the seed of a plane pair whose next tooth pair touches far before its contact line reaches the flank
 TIMES = 5.0  # its torque, so that the teeth give way by a quarter of a module
@@ -101,3 +101,18 @@ def test_overlap_as_deep_as_the_deflection_is_searched(deep: GearModel, monkeypa
     monkeypatch.undo()
     with pytest.raises(NotConverged, match="lower the torque"):
         loaded(2.0 * TIMES)
+
+
+def test_contact_that_steep_modifications_move_out_of_the_window_is_found() -> None:
+    """Problem: linear relief of 40 µm over the last 0.75 mm of He's pair; at a quarter of the pitch the next tooth pair
+    touches at the start of its relief, 0.3 mm beside its contact line, which is on the path of contact. Right: the
+    rotation with whole flanks searched; without this contact it is 1 µm of flank larger."""
+    steep = [f"{gear}.{key}" for gear in ("pinion", "wheel")
+             for key in ("tip_relief_um=40", "tip_relief_start_diameter_mm=154.5")]
+    model, angle = model_of(spur_scene("mesh.level=standard", *steep)), 2.0 * np.pi / 50.0 * 5 / 20
+    assert farthest_moved(model.pair) > model.half_width
+    found, wanted = (
+        shared_position(each, angle, (0.0, 0.0), [0.0], None) for each in (model, replace(model, half_width=np.inf))
+    )
+    assert set(found.contact.geometry.point_tooth[found.smooth.traction[:, 0] > 0.0].tolist()) == {-1, 0}
+    assert approach(found) == pytest.approx(approach(wanted), rel=1e-4)

@@ -88,7 +88,7 @@ def test_further_search_starts_from_the_forces_of_the_one_before(
     turn, found = 2.0 * position_search.RELOCATE * spur.pair.pinion.normal_module / spur.base_radius, []
 
     def recorded(*arguments: Any, **options: Any) -> Equilibrium:
-        found.append((arguments[2], frictionless(*arguments, **options)))
+        found.append((options.get("near"), frictionless(*arguments, **options)))
         return found[-1][1]
 
     monkeypatch.setattr(position_search, "frictionless", recorded)

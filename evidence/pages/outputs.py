@@ -76,6 +76,7 @@ FILES = (
     ("losses.csv", "`evolvent losses`: one line per torque and friction coefficient"),
     ("design.csv", "`evolvent design`: one line per variant, [flank_design.md](flank_design.md)"),
     ("design_best.csv", "likewise: one line per torque of the best variants and of the scene as it stands"),
+    ("design_band.csv", "likewise: variants within the tolerances of the best one, with the columns of design.csv"),
     ("best.toml", "likewise: the scene with the best variant"),
     ("excitation.csv", "excitation under each torque: `evolvent excitation`, `dynamics`, `run` at an operating speed"),
     ("excitation.json", "`evolvent excitation` and `dynamics`: what it is of, and the load that a relief fits"),

@@ -13,9 +13,10 @@ from evolvent.dynamics.results.curves import LOADED, TANGENT, pitch_curves
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.tables.table import Table
-from evolvent.run.design.variant_mesh import FACE_LOAD, ON_EDGES, PEAK_TO_PEAK
+from evolvent.run.design.evaluation import Variants
+from evolvent.run.design.variant_mesh import FACE_LOAD, ON_EDGES, PEAK_TO_PEAK, PRESSURE
 from evolvent.run.dynamics.excitation import SolvedExcitation
-from evolvent.scene.schema.design import FIGURES, DesignSection
+from evolvent.scene.schema.design import FIGURES, DesignSection, Figure
 from evolvent_meshes.arrays import Floats
 
 
@@ -54,13 +55,20 @@ class BestRow:
     """Mean tangent stiffness of the mesh with the contact resolved."""
     resolved_stiffness_mean_N_per_um_error: float
     """Estimated error of it."""
+    band_left_out: int
+    """Number of variants within the tolerances of the best one of which edges of tips bear, or that cannot be computed:
+    the band is without them."""
     band_lowest_peak_to_peak_um: float
     """Least peak-to-peak transmission error of variants within the tolerances of the best one; NaN of others."""
     band_highest_peak_to_peak_um: float
-    """Largest one of them. NaN where edges of tips bear of one of them."""
+    """Largest one of them."""
     band_lowest_face_load_factor: float
     """Least K_Hβ of variants within the tolerances of the best one."""
     band_highest_face_load_factor: float
+    """Largest one of them."""
+    band_lowest_pressure_MPa: float
+    """Least p_0 of them."""
+    band_highest_pressure_MPa: float
     """Largest one of them."""
 
 
@@ -77,24 +85,27 @@ class Checked:
     """Excitation in line contact; None where edges bear under the lightest torque."""
     resolved: SolvedExcitation | None
     """Excitation with the contact resolved; None where it was not asked for."""
+    reasons: tuple[str, ...] = ()
+    """Why one of both could not be solved, a sentence each."""
     rank: int = 0
     """1 of the best variant; 0 of the scene as it stands where it is not one of the best."""
-    band: Floats | None = None
-    """(b, m, f) figures of variants within its tolerances; None where it is not the best one."""
+    band: Variants | None = None
+    """b variants within its tolerances; None where it is not the best one, and without tolerances."""
 
     @property
     def timings(self) -> Timings:
         """Wall time of all its solutions [s]."""
         return sum((each.timings for each in (self.line, self.resolved) if each is not None), Timings())
 
-    def largest(self, torques: int) -> float:
-        """Largest peak-to-peak transmission error under all torques [µm], of which there are so many: of the line
-        contact or, where edges bear, of the resolved one; infinite where neither is known."""
+    def figure(self, name: Figure, torques: int) -> tuple[float, float]:
+        """A figure's largest value under all torques, of which there are so many, and its error: of the line contact
+        or, where edges bear, of the resolved one."""
+        kind = {FIGURES[0]: "error", FIGURES[1]: "face_load", FIGURES[2]: "pressure"}[name]
         for solved in (self.line, self.resolved):
-            sizes = [size for size, _ in _figures(solved, torques)["error"]]
-            if np.isfinite(sizes).all():
-                return max(sizes)
-        return math.inf
+            pairs = _figures(solved, torques)[kind]
+            if np.isfinite([value for value, _ in pairs]).all():
+                return max(pairs)
+        return math.nan, math.nan
 
     def rows(self, torques: Sequence[float]) -> Iterator[BestRow]:
         """A row for each torque [N·mm], ascending."""
@@ -102,19 +113,24 @@ class Checked:
         for j, torque in enumerate(torques):
             yield BestRow(
                 self.rank, self.variant, 1e-3 * torque, *line["error"][j], *line["stiffness"][j], *line["face_load"][j],
-                *line["pressure"][j], *resolved["error"][j], *resolved["stiffness"][j], *self._band(j),
+                *line["pressure"][j], *resolved["error"][j], *resolved["stiffness"][j], self._left_out(j),
+                *self._band(j),
             )
 
-    def _band(self, torque: int) -> tuple[float, float, float, float]:
-        if self.band is None:
-            return math.nan, math.nan, math.nan, math.nan
-        figures = self.band[:, torque]
-        bears = ~(figures[:, ON_EDGES] <= MOST_ON_EDGES).all()
-        if bears:
-            return math.nan, math.nan, math.nan, math.nan
-        found = figures[:, [PEAK_TO_PEAK, FACE_LOAD]]
-        (low, low_factor), (high, high_factor) = found.min(axis=0), found.max(axis=0)
-        return float(low), float(high), float(low_factor), float(high_factor)
+    def _known(self, torque: int) -> Floats:
+        """(b', 3) figures of variants within the tolerances, without those of which edges bear under a torque."""
+        figures = np.zeros((0, ON_EDGES + 1)) if self.band is None else self.band.figures[:, torque]
+        return np.asarray(figures[figures[:, ON_EDGES] <= MOST_ON_EDGES][:, [PEAK_TO_PEAK, FACE_LOAD, PRESSURE]])
+
+    def _left_out(self, torque: int) -> int:
+        """Number of variants within the tolerances without figures under a torque."""
+        return 0 if self.band is None else len(self.band.values) - len(self._known(torque))
+
+    def _band(self, torque: int) -> Iterator[float]:
+        """Least and largest of each figure within the tolerances."""
+        known = self._known(torque)
+        for column in known.T if len(known) else np.full((3, 1), math.nan):
+            yield from (float(column.min()), float(column.max()))
 
 
 def ranked(checked: Sequence[Checked], best: Sequence[int], section: DesignSection, torques: int) -> list[Checked]:
@@ -123,7 +139,9 @@ def ranked(checked: Sequence[Checked], best: Sequence[int], section: DesignSecti
     others = [each for each in checked if each.variant not in best]
     among = sorted((each for each in checked if each.variant in best), key=lambda each: best.index(each.variant))
     if section.targets == FIGURES[:1]:
-        among.sort(key=lambda each: each.largest(torques))
+        most = min((limit.most for limit in section.limits if limit.figure == FIGURES[0]), default=math.inf)
+        sizes = {each.variant: each.figure(FIGURES[0], torques)[0] for each in among}
+        among.sort(key=lambda each: (not sizes[each.variant] <= most, sizes[each.variant]))
     return [*(replace(each, rank=rank) for rank, each in enumerate(among, 1)), *others]
 
 

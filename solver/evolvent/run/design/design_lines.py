@@ -6,13 +6,15 @@ import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.run.design.checked import BEST, BestRow, Checked
 from evolvent.run.design.design_space import DesignSpace
 from evolvent.run.design.evaluation import Variants
 from evolvent.run.design.ranking import Ranking
-from evolvent.run.design.tables import ALLOWED, DESIGN, FRONT, VariantRow
-from evolvent.scene.schema.design import keys_of_both
+from evolvent.run.design.tables import ALLOWED, DESIGN, EDGES, FRONT, VariantRow
+from evolvent.scene.schema.design import FIGURES, keys_of_both
 from evolvent_meshes.arrays import Floats
 
 BEST_SCENE = "best.toml"
@@ -23,74 +25,119 @@ def design_lines(folder: Path) -> Iterator[str]:
     """The best variant: its modifications, and under each torque its figures beside those of the scene as it stands and
     of the resolved contact."""
     variants, rows = DESIGN.read(folder), BEST.read(folder)
-    yield f"{len(variants)} variants, {sum(row.status in (ALLOWED, FRONT) for row in variants)} of them allowed"
+    counts = [sum(row.status in each for row in variants) for each in ((ALLOWED, FRONT), (EDGES,))]
+    yield f"{len(variants)} variants, {counts[0]} of them allowed, of {counts[1]} edges of tips bear"
     best = [row for row in rows if row.rank == 1]
     if best:
-        yield f"best: variant {best[0].variant}, {modifications(variants[best[0].variant])}"
+        yield f"best: variant {best[0].variant}, {modifications(variants[best[0].variant], variants)}"
     for row in best:
         before = next(each for each in rows if each.variant == 0 and each.torque_Nm == row.torque_Nm)
         yield f"{row.torque_Nm:.4g} N·m: transmission error {'; '.join(_figures(row, before))}"
 
 
-def modifications(row: VariantRow) -> str:
-    """Modifications of a variant in words."""
-    return ", ".join(f"{name} = {value:.6g}" for name, value in row.values.items())
+def modifications(row: VariantRow, variants: Sequence[VariantRow]) -> str:
+    """Modifications of a variant in words: those that vary."""
+    varying = [name for name in row.values if len({each.values[name] for each in variants[1:]}) > 1]
+    return ", ".join(f"{name} = {row.values[name]:.6g}" for name in varying or row.values)
 
 
 def _figures(row: BestRow, before: BestRow) -> Iterator[str]:
     """Figures of a variant under a torque. before: those of the scene as it stands."""
-    line = _bar(row.transmission_error_peak_to_peak_um, row.transmission_error_peak_to_peak_um_error)
-    resolved = _bar(row.resolved_peak_to_peak_um, row.resolved_peak_to_peak_um_error)
+    line = plus_minus(row.transmission_error_peak_to_peak_um, row.transmission_error_peak_to_peak_um_error, 2)
+    resolved = plus_minus(row.resolved_peak_to_peak_um, row.resolved_peak_to_peak_um_error, 2)
     if math.isnan(row.transmission_error_peak_to_peak_um):
         yield f"{resolved} µm peak to peak with the contact resolved, as edges of tips bear"
     else:
         yield f"{line} µm peak to peak"
         if not math.isnan(row.resolved_peak_to_peak_um):
             yield f"resolved {resolved} µm"
-    was = before.transmission_error_peak_to_peak_um
-    known = was if math.isfinite(was) else before.resolved_peak_to_peak_um
-    if math.isfinite(known) and before.variant != row.variant:
-        yield f"as it stands {known:.2f} µm"
-    if not math.isnan(row.band_lowest_peak_to_peak_um):
-        yield f"within tolerances {row.band_lowest_peak_to_peak_um:.2f} to {row.band_highest_peak_to_peak_um:.2f} µm"
+    if before.variant != row.variant:
+        yield _before(before)
     if not math.isnan(row.face_load_factor):
-        yield f"K_Hβ {_bar(row.face_load_factor, row.face_load_factor_error)}"
+        yield f"K_Hβ {plus_minus(row.face_load_factor, row.face_load_factor_error, 2)}"
     if not math.isnan(row.largest_pressure_MPa):
         yield f"p_0 {plus_minus(row.largest_pressure_MPa, row.largest_pressure_MPa_error, 0)} MPa"
+    yield from _band(row)
 
 
-def _bar(value: float, error: float) -> str:
-    return plus_minus(value, error, 2)
+def _before(before: BestRow) -> str:
+    """Transmission error of the scene as it stands."""
+    was = before.transmission_error_peak_to_peak_um
+    known = was if math.isfinite(was) else before.resolved_peak_to_peak_um
+    return f"as it stands {known:.2f} µm" if math.isfinite(known) else "as it stands edges of tips bear"
+
+
+def _band(row: BestRow) -> Iterator[str]:
+    """Figures within the tolerances."""
+    if math.isnan(row.band_lowest_peak_to_peak_um):
+        return
+    yield f"within tolerances {row.band_lowest_peak_to_peak_um:.2f} to {row.band_highest_peak_to_peak_um:.2f} µm"
+    if not math.isnan(row.band_lowest_face_load_factor):
+        yield f"K_Hβ {row.band_lowest_face_load_factor:.2f} to {row.band_highest_face_load_factor:.2f}"
+    yield f"p_0 {row.band_lowest_pressure_MPa:.0f} to {row.band_highest_pressure_MPa:.0f} MPa"
 
 
 def design_warnings(
-    space: DesignSpace, variants: Variants, checked: Sequence[Checked], best: Checked | None
+    space: DesignSpace, variants: Variants, checked: Sequence[Checked], best: Checked | None, is_resolved: bool
 ) -> Iterator[str]:
-    """Sentences on variants without figures, on a best one at the end of an axis, on tolerances within which edges
-    bear, and on the solutions of the best ones."""
-    count = len(variants.values)
-    if edges := int(Ranking(space.section, variants.figures).bears_on_edges.sum()):
-        yield (
-            f"{edges} of {count} variants have no figures: edges of tips bear, which is no line contact, as their "
-            "reliefs are too small for the heaviest torque."
-        )
+    """Sentences on variants without figures, on the best one and its neighbours, on its tolerances, and on solutions
+    of the best ones. is_resolved: as of `Ranking`."""
+    ranking, count = Ranking(space.section, variants.figures, is_resolved), len(variants.values)
     if failed := [reason for reason in variants.reasons if reason]:
         yield f"{len(failed)} of {count} variants cannot be computed. The first one: {failed[0]}"
     if best is None:
-        yield "No variant is allowed: widen design.vary, or raise design.limits."
+        yield from _none_allowed(ranking)
     else:
         yield from _at_ends(space, variants.values[best.variant])
-    if best is not None and best.band is not None and Ranking(space.section, best.band).bears_on_edges.any():
-        yield "Within the tolerances edges of tips bear: under these torques design_best.csv has no band."
+        yield from _about_best(ranking, best)
+        yield from _within_tolerances(space, best)
     for each in checked:
+        yield from (f"variant {each.variant}, {sentence}" for sentence in each.reasons)
         for name, solved in (("line contact", each.line), ("resolved contact", each.resolved)):
             for sentence in solved.warnings if solved is not None else ():
                 yield f"variant {each.variant}, {name}: {sentence}"
+
+
+def _none_allowed(ranking: Ranking) -> Iterator[str]:
+    """Why no variant is allowed."""
+    excess = ranking.excess[~ranking.bears_on_edges]
+    nearest = float(np.min(excess, initial=math.inf))
+    edges = int(ranking.bears_on_edges.sum())
+    words = [f"of {edges} edges of tips bear"] if edges else []
+    words += [f"the nearest one exceeds a limit by {100.0 * nearest:.2g} %"] if 0.0 < nearest < math.inf else []
+    yield f"No variant is allowed ({'; '.join(words)}): widen design.vary, or raise design.limits."
+
+
+def _about_best(ranking: Ranking, best: Checked) -> Iterator[str]:
+    """Sentences on variants that cannot be told from the best one, and on those that were not looked at."""
+    value, error = best.figure(ranking.section.targets[0], ranking.figures.shape[1])
+    if others := len(ranking.like(best.variant, error)):
+        yield f"{others} other variants lie within the error bar of the best one: choose among them by design.csv."
+    if FIGURES[0] in ranking.section.targets and (left := len(ranking.left_out(value))):
+        yield (
+            f"Edges of tips bear of {left} variants for which line contact estimates a smaller transmission error than "
+            "the best one's, too much for it to be known: resolve their contact by `evolvent excitation`."
+        )
+
+
+def _within_tolerances(space: DesignSpace, best: Checked) -> Iterator[str]:
+    """Sentences on limits that do not hold within the tolerances, and on variants that the band leaves out."""
+    if best.band is None:
+        return
+    band = Ranking(space.section, best.band.figures)
+    left = int((~(band.on_edges <= band.most_on_edges)).sum())
+    if left:
+        count = len(best.band.values)
+        yield f"Within the tolerances {left} of {count} variants have no figures, as edges of tips bear."
+    for limit in space.section.limits:
+        most = float(np.nanmax(band.largest(limit.figure)[band.on_edges <= band.most_on_edges], initial=-math.inf))
+        if most > limit.most:
+            yield f"Within the tolerances {limit.figure} is up to {most:.4g}, above its limit of {limit.most:.4g}."
 
 
 def _at_ends(space: DesignSpace, variant: Floats) -> Iterator[str]:
     """A sentence on each key whose best value is an end of its range, but for none at all."""
     for row in space.section.vary:
         value = float(variant[space.keys.index(keys_of_both(row.key)[0])])
-        if value == row.lowest != 0.0 or value + row.step > row.highest:
+        if value == row.lowest != 0.0 or value >= row.highest:
             yield f"{row.key}: the best value, {value:.6g}, ends its range; beyond it there may be better ones."

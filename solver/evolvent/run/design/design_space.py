@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -13,12 +13,11 @@ from scipy.stats import qmc
 
 from evolvent.scene.scene import Scene, derived_values
 from evolvent.scene.schema.dependence import value_at
-from evolvent.scene.schema.design import DesignSection, Vary, expanded, keys_of_both
+from evolvent.scene.schema.design import ROUNDING, DesignSection, Vary, expanded, keys_of_both
+from evolvent.scene.schema.flank import LEAST
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.modifications.modifications import SIGNED
 
-ROUNDING = 1e-9
-"""Part of a step by which the last value of an axis may exceed the highest one."""
 CORNERS = 5
 """Largest number of deviations of which all combinations of extreme values are computed."""
 SPREAD = 32
@@ -89,7 +88,7 @@ class DesignSpace:
             column = found[1:, self.keys.index(name)]
             column += amounts[name] * part
             if not _may_be_negative(name):
-                np.maximum(column, 0.0, out=column)
+                column[column < LEAST] = 0.0  # smaller amounts are taken for millimetres
         return found
 
     def scene_of(self, variant: Floats) -> Scene:
@@ -108,13 +107,8 @@ class DesignSpace:
 
 def _count(row: Vary) -> int:
     """Number of values of an axis."""
-    return math.floor((row.highest - row.lowest) / row.step + ROUNDING) + 1
+    return math.floor((row.highest - row.lowest) / row.step * (1.0 + ROUNDING)) + 1
 
 
 def _may_be_negative(name: str) -> bool:
     return name.partition(".")[2] in SIGNED or name.startswith("pair.")
-
-
-def differing(names: Sequence[str], first: Floats, second: Floats) -> dict[str, float]:
-    """Key -> value of a variant (k,), where it differs from another one (k,)."""
-    return {name: float(value) for name, value, other in zip(names, first, second) if value != other}

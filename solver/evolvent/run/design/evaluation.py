@@ -65,6 +65,8 @@ class Evaluation:
     def __init__(self, call: Call, store: Store, mesh: Callable[[], VariantMesh], known: Variants) -> None:
         self._call, self._store, self._mesh, self._known = call, store, mesh, known
         self._asked: dict[bytes, Floats] = {}
+        self.expected = 0
+        """Number of variants that are expected in all, for the display of progress."""
 
     @property
     def asked(self) -> Variants:
@@ -77,7 +79,9 @@ class Evaluation:
         self._asked |= {row.tobytes(): row for row in values if row.tobytes() not in self._asked}
         known = {row.tobytes() for row in self._known.values}
         missing = list({row.tobytes(): row for row in values if row.tobytes() not in known}.values())
-        self._call.progress.stage(VARIANTS, len(known) + len(missing), len(known))
+        if missing:
+            self._mesh()  # has stages of its own
+            self._call.progress.stage(VARIANTS, max(self.expected, len(known) + len(missing)), len(known))
         size = AT_ONCE * self._call.comm.size
         for first in range(0, len(missing), size):
             self._compute(np.array(missing[first : first + size]))

@@ -8,14 +8,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from evolvent.results.drawing.labels import UNITS, ending, label
 from evolvent.results.drawing.style import FAINT, HOLLOW, INK, PINION, PRESSURE_MAP, WHEEL, foot, sheet
 from evolvent.run.design.checked import BestRow
-from evolvent.run.design.tables import ALLOWED, EDGES, FRONT, VariantRow
+from evolvent.run.design.tables import ALLOWED, BEYOND, EDGES, FRONT, VariantRow
 from evolvent_meshes.arrays import Floats
 
 BEFORE, AFTER = WHEEL, PINION
+ASIDE = 0.008
+"""Distance of points of line and resolved contact from their torque, over the largest one: bars lie side by side."""
+LEAST_HEIGHT = 0.5
+"""Ratio of the smallest and the largest value from which on an axis does not begin at zero."""
 TARGET = "transmission_error_peak_to_peak_um"
 WORDS, WORST = "transmission error, peak to peak [µm]", "largest peak-to-peak transmission error [µm]"
 
@@ -70,17 +75,19 @@ def _axis_label(variants: Sequence[VariantRow], name: str) -> str:
 
 def _left_out(variants: Sequence[VariantRow]) -> list[str]:
     count = sum(row.status not in (ALLOWED, FRONT) for row in variants)
-    said = f"{count} of {len(variants)} variants are left out or grey: edges of tips bear, or they exceed a limit."
+    said = f"{count} of {len(variants)} variants have no values here: edges of tips bear, or a limit is exceeded."
     return [said] * bool(count)
 
 
 def _over_torque(axes: Axes, before: Sequence[BestRow], after: Sequence[BestRow]) -> None:
     """Peak-to-peak transmission error over the torque."""
-    if after and np.isfinite([row.band_highest_peak_to_peak_um for row in after]).any():
-        low, high = ([getattr(row, f"band_{end}_peak_to_peak_um") for row in after] for end in ("lowest", "highest"))
-        if not np.allclose(low, high, equal_nan=True):
-            axes.fill_between([row.torque_Nm for row in after], low, high, color=AFTER, alpha=0.18, lw=0.0,
-                              label="within the tolerances")
+    within = [row for row in after if row.band_highest_peak_to_peak_um > row.band_lowest_peak_to_peak_um]
+    if within:
+        low, high = (
+            np.array([getattr(row, f"band_{end}_peak_to_peak_um") for row in within]) for end in ("lowest", "highest")
+        )
+        axes.vlines([row.torque_Nm for row in within], low, high, color=AFTER, alpha=0.22, lw=11.0,
+                    label="within the tolerances")
     for rows, colour, name in ((before, BEFORE, "as it stands"), (after, AFTER, "best variant")):
         if rows is after and after and after[0].variant == 0:
             continue
@@ -93,13 +100,16 @@ def _over_torque(axes: Axes, before: Sequence[BestRow], after: Sequence[BestRow]
                 continue
             bars = np.nan_to_num([getattr(row, f"{part}_peak_to_peak_um_error") for row in rows])
             face = {"markerfacecolor": "white", "zorder": 4.0} if words else {}
-            axes.errorbar(torques, values, bars, color=colour, marker=marker, linestyle=style, capsize=3.0,
+            aside = ASIDE * max(torques) * (1 if words else -1)
+            beside = [torque + aside for torque in torques]
+            axes.errorbar(beside, values, bars, color=colour, marker=marker, linestyle=style, capsize=3.0,
                           label=f"{name}{words}", **face)
     axes.set_xlim(left=0.0)
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.25 * axes.get_ylim()[1])  # room for the legend
     axes.set_xlabel("torque [N·m]")
     axes.set_ylabel(WORDS)
-    axes.legend(loc="best")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper left")
 
 
 def _values(variants: Sequence[VariantRow], name: str) -> Floats:
@@ -114,53 +124,82 @@ def _target(variants: Sequence[VariantRow]) -> tuple[Floats, Floats]:
 
 
 def _curve(axes: Axes, variants: Sequence[VariantRow], name: str, best: Sequence[BestRow]) -> None:
-    """Target over the only key that varies."""
-    own = variants[1:]
-    order = np.argsort(_values(own, name))
+    """Target over the only key that varies, of the scene as it stands, too."""
+    own = variants if variants[0].values[name] in {row.values[name] for row in variants[1:]} else variants[1:]
+    own = sorted(own, key=lambda row: row.values[name])
     allowed, beyond = _target(own)
-    axes.plot(_values(own, name)[order], allowed[order], color=INK, marker=".", lw=1.4, label="line contact")
-    axes.plot(_values(own, name)[order], beyond[order], color=FAINT, marker=".", lw=0.0)
-    bears = [row.values[name] for row in own if row.status == EDGES]
-    axes.plot(bears, np.zeros(len(bears)), color=FAINT, marker="|", lw=0.0, clip_on=False, label="edges of tips bear")
+    x = _values(own, name)
+    axes.plot(x, allowed, color=INK, marker=".", lw=1.4, label="line contact")
+    if np.isfinite(beyond).any():
+        axes.plot(x, beyond, color=FAINT, marker=".", lw=0.0, label="beyond a limit")
     groups = [[row for row in best if row.rank == rank] for rank in range(1, 1 + max(row.rank for row in best))]
     found = [(variants[rows[0].variant].values[name], _largest(rows, "resolved")) for rows in groups]
     if np.isfinite(found).any():
         axes.plot(*np.transpose(found), label="contact resolved", **{**HOLLOW, "marker": "s"}, color=AFTER)
     _mark(axes, [(variants[rows[0].variant].values[name], _largest(rows)) for rows in groups[:1]])
-    axes.set_ylim(bottom=0.0)
-    axes.legend(loc="best")
+    known = [*allowed[np.isfinite(allowed)], *(y for _, y in found if np.isfinite(y))]
+    low = min(known, default=0.0)
+    axes.set_ylim(bottom=0.0 if not known or low < LEAST_HEIGHT * max(known) else 0.9 * low)
+    bears = [row.values[name] for row in own if row.status == EDGES]
+    if bears:
+        axes.plot(bears, np.full(len(bears), axes.get_ylim()[0]), color=FAINT, marker="|", markersize=9.0, lw=0.0,
+                  clip_on=False, label="edges of tips bear")
     axes.set_xlabel(_axis_label(variants, name))
     axes.set_ylabel(WORST)
+    axes.legend(loc="best")
 
 
 def lattice(variants: Sequence[VariantRow], names: Sequence[str]) -> Floats | None:
     """(q, p) target over the different values of two keys; None where less than half of the combinations are known."""
-    first, second = (np.unique(_values(variants[1:], name)) for name in names)
-    if 2 * len(variants) < len(first) * len(second):
+    own = _on_lattice(variants, names)
+    first, second = (np.unique(_values(own, name)) for name in names)
+    if 2 * len(own) < len(first) * len(second):
         return None
     grid = np.full((len(second), len(first)), np.nan)
-    allowed, _ = _target(variants[1:])
-    columns, rows = (np.searchsorted(axis, _values(variants[1:], name)) for axis, name in zip((first, second), names))
-    grid[rows, columns] = allowed
+    columns, rows = (np.searchsorted(axis, _values(own, name)) for axis, name in zip((first, second), names))
+    grid[rows, columns] = _target(own)[0]
     return grid
+
+
+def _on_lattice(variants: Sequence[VariantRow], names: Sequence[str]) -> Sequence[VariantRow]:
+    """All variants that vary, with the scene as it stands where its values are among theirs."""
+    axes = [{row.values[name] for row in variants[1:]} for name in names]
+    stands = all(variants[0].values[name] in axis for name, axis in zip(names, axes))
+    return variants if stands else variants[1:]
 
 
 def _map(
     figure: Figure, axes: Axes, variants: Sequence[VariantRow], names: Sequence[str], grid: Floats,
     best: Sequence[BestRow],
 ) -> None:
-    """Target over two keys; variants that are not allowed are hatched."""
-    first, second = (np.unique(_values(variants[1:], name)) for name in names)
+    """Target over two keys. Variants of which edges bear are hatched, those beyond a limit dotted."""
+    own = _on_lattice(variants, names)
+    first, second = (np.unique(_values(own, name)) for name in names)
     axes.grid(visible=False)
-    axes.patch.set(facecolor="#f4f4f4", hatch="////", edgecolor=FAINT)
+    for status, hatch, words in ((EDGES, "/", "edges of tips bear"), (BEYOND, ".", "beyond a limit")):
+        places = [[row.values[name] for name in names] for row in own if row.status == status]
+        if places:
+            _hatched(axes, first, second, places, hatch)
+            axes.scatter([], [], marker="s", s=90.0, facecolor="white", edgecolor=FAINT, hatch=4 * hatch, label=words)
     if np.isfinite(grid).any():
-        norm = Normalize(float(np.nanmin(grid)), float(np.nanmax(grid)))
+        low, high = float(np.nanmin(grid)), float(np.nanmax(grid))
+        norm = Normalize(low - 0.3 * (high - low), high)  # the best value has a colour of its own, too
         drawn = axes.pcolormesh(first, second, np.ma.masked_invalid(grid), cmap=PRESSURE_MAP, norm=norm,
                                 shading="nearest")
         figure.colorbar(drawn, ax=axes, pad=0.015, label=WORST)
     _mark(axes, [tuple(variants[row.variant].values[name] for name in names) for row in best[:1]])
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper right")
     axes.set_xlabel(_axis_label(variants, names[0]))
     axes.set_ylabel(_axis_label(variants, names[1]))
+
+
+def _hatched(axes: Axes, first: Floats, second: Floats, places: Sequence[Sequence[float]], hatch: str) -> None:
+    """Hatches the cells of some points of two axes."""
+    width, height = (float(np.diff(axis).min()) if len(axis) > 1 else 1.0 for axis in (first, second))
+    for x, y in places:
+        axes.add_patch(Rectangle((x - 0.5 * width, y - 0.5 * height), width, height, facecolor="white", edgecolor=FAINT,
+                                 hatch=4 * hatch, lw=0.0))
 
 
 def _scatter(axes: Axes, variants: Sequence[VariantRow], best: Sequence[BestRow]) -> None:

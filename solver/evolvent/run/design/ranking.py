@@ -10,15 +10,17 @@ import numpy as np
 
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
 from evolvent.run.design.variant_mesh import FACE_LOAD, ON_EDGES, PEAK_TO_PEAK, PRESSURE
-from evolvent.scene.schema.design import FIGURES, DesignSection
+from evolvent.scene.schema.design import FIGURES, DesignSection, Figure
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
 COLUMN = dict(zip(FIGURES, (PEAK_TO_PEAK, FACE_LOAD, PRESSURE)))
 """Name of a figure -> its column."""
-COMPETING = 0.1
+COMPETING = 0.2
 """Largest part of the load that edges of tips may bear of a variant that competes, where its contact is resolved before
-it is called the best. With 7 % the peak-to-peak transmission error of He's pair with a long relief is 1 % off, and the
+it is called the best. With 12 % the peak-to-peak transmission error of He's pair with a long relief is 1 % off, and the
 least one over the relief lies where tips just bear."""
+SAME = 1e-3
+"""Relative difference below which two figures are equal: they are known to some per mille."""
 BEYOND_LIMITS, ON_EDGE, WITHOUT = 1e6, 2e6, 3e6
 """Costs of variants, beyond every figure: that exceed a limit, whose edges of tips bear, and that have no figures. What
 they have too much is added, so that a search is led back."""
@@ -42,7 +44,7 @@ class Ranking:
         asked = {*self.section.targets, *(limit.figure for limit in self.section.limits)}
         return COMPETING if self.is_resolved and asked == {FIGURES[0]} else MOST_ON_EDGES
 
-    def largest(self, name: str) -> Floats:
+    def largest(self, name: Figure) -> Floats:
         """(n,) a figure's largest value under all torques; NaN where one is missing."""
         return np.asarray(self.figures[..., COLUMN[name]].max(axis=1))
 
@@ -58,9 +60,11 @@ class Ranking:
 
     @property
     def excess(self) -> Floats:
-        """(n,) largest ratio of a figure and its limit, less 1; −∞ without limits."""
+        """(n,) largest ratio of a figure and its limit, less 1; −∞ without limits, ∞ where such a figure is missing."""
         ratios = [self.largest(limit.figure) / limit.most - 1.0 for limit in self.section.limits]
-        return np.max(ratios, axis=0) if ratios else np.full(len(self.figures), -math.inf)
+        if not ratios:
+            return np.full(len(self.figures), -math.inf)
+        return np.nan_to_num(np.max(ratios, axis=0), nan=math.inf)
 
     @property
     def is_allowed(self) -> Bools:
@@ -68,12 +72,12 @@ class Ranking:
         known = np.isfinite([self.largest(name) for name in self.section.targets]).all(axis=0)
         return np.asarray(known & (self.on_edges <= self.most_on_edges) & (self.excess <= 0.0))
 
-    def cost(self, target: str) -> Floats:
+    def cost(self, target: Figure) -> Floats:
         """(n,) what a search makes small: the target, beyond all of its values where a variant is not allowed."""
         value, excess = self.largest(target), self.excess
         cost = np.where(excess > 0.0, BEYOND_LIMITS * (1.0 + np.tanh(np.maximum(excess, 0.0)) / 2.0), value)
         cost = np.where(self.on_edges > self.most_on_edges, ON_EDGE * (1.0 + self.on_edges / 4.0), cost)
-        return np.where(np.isfinite(cost), cost, WITHOUT)
+        return np.where(np.isfinite(cost) & (excess < math.inf), cost, WITHOUT)
 
     @property
     def front(self) -> Bools:
@@ -82,17 +86,33 @@ class Ranking:
         values = np.column_stack([self.largest(name)[allowed] for name in self.section.targets])
         found = np.zeros(len(self.figures), dtype=bool)
         for number, row in zip(allowed, values):
-            beaten = (values <= row).all(axis=1) & (values < row).any(axis=1)
+            beaten = (values <= (1.0 + SAME) * row).all(axis=1) & (values < (1.0 - SAME) * row).any(axis=1)
             found[number] = not beaten.any()
         return found
 
     def best(self, count: int) -> Ints:
         """Indices of the best variants, at most `count`: with one target those with its smallest values; with several
-        of the front, the best of each target in turn."""
+        of the front, the best of each target in turn. Of equal ones the transmission error decides."""
         targets = self.section.targets
         among = np.flatnonzero(self.front if len(targets) > 1 else self.is_allowed)
-        orders = [among[np.argsort(self.largest(name)[among], kind="stable")] for name in targets]
+        orders = [among[np.lexsort([self.largest(FIGURES[0])[among], self._steps(name)[among]])] for name in targets]
         return np.array(_in_turn(orders)[:count], dtype=int)
+
+    def _steps(self, name: Figure) -> Floats:
+        """(n,) a figure in steps of `SAME`, by which equal ones have the same rank."""
+        return np.asarray(np.round(np.log(np.maximum(self.largest(name), 1e-12)) / SAME))
+
+    def like(self, best: int, error: float) -> Ints:
+        """Indices of other variants that are allowed and whose first target is within an error of that of the best."""
+        value = self.largest(self.section.targets[0])
+        near = self.is_allowed & (np.abs(value - value[best]) <= error)
+        near[best] = False
+        return np.flatnonzero(near)
+
+    def left_out(self, value: float) -> Ints:
+        """Indices of variants that do not compete as edges bear too much, though line contact estimates a smaller
+        transmission error than this [µm] for them."""
+        return np.flatnonzero((self.on_edges > self.most_on_edges) & (self.largest(FIGURES[0]) < value))
 
     @property
     def checked(self) -> list[int]:

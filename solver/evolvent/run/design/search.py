@@ -11,6 +11,7 @@ from scipy.optimize import differential_evolution
 from evolvent.run.design.design_space import DesignSpace
 from evolvent.run.design.evaluation import Evaluation
 from evolvent.run.design.ranking import Ranking
+from evolvent.scene.schema.design import Figure
 from evolvent_meshes.arrays import Floats, Ints
 
 PER_VARIABLE, LEAST_POPULATION = 8, 16
@@ -36,7 +37,7 @@ def search(space: DesignSpace, evaluation: Evaluation, is_resolved: bool) -> Non
             _towards(space, costs, section.samples // len(section.targets))
 
 
-def _costs(space: DesignSpace, evaluation: Evaluation, is_resolved: bool, target: str, points: Ints) -> Floats:
+def _costs(space: DesignSpace, evaluation: Evaluation, is_resolved: bool, target: Figure, points: Ints) -> Floats:
     """Costs (n,) of points (n, v) of the lattice."""
     return Ranking(space.section, evaluation.of(space.variants(points)).figures, is_resolved).cost(target)
 

@@ -28,7 +28,7 @@ class VariantRow:
     transmission_error_peak_to_peak_um: float
     """Peak-to-peak transmission error, the largest under all torques; NaN where edges of tips bear under one."""
     face_load_factor: float
-    """Face load factor K_Hβ (ISO 6336-1:2006, 7.2.2), the largest under all torques; 1 in the plane."""
+    """Face load factor K_Hβ (ISO 6336-1:2006, 7.2.2), the largest under all torques; NaN in the plane."""
     largest_pressure_MPa: float
     """Largest of Hertz' p_0 under all torques, away from edges of tips and from starts of linear reliefs."""
     on_edges_percent: float
@@ -41,7 +41,7 @@ class VariantRow:
     """Why it cannot be computed; empty where it can."""
 
 
-DESIGN = Table("design.csv", VariantRow)
+DESIGN, BAND = Table("design.csv", VariantRow), Table("design_band.csv", VariantRow)
 
 
 def variant_rows(section: DesignSection, keys: Sequence[str], variants: Variants) -> Iterator[VariantRow]:

@@ -19,8 +19,8 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
 PEAK_TO_PEAK, FACE_LOAD, PRESSURE, ON_EDGES = range(4)
-"""Columns of the figures of a variant under a torque: peak-to-peak transmission error [µm], K_Hβ, largest p_0 away from
-edges and kinks [MPa], and the largest part of the load that edges of tips bear."""
+"""Columns of the figures of a variant under a torque: peak-to-peak transmission error [µm], K_Hβ (NaN in the plane),
+largest p_0 away from edges and kinks [MPa], and the largest part of the load that edges of tips bear."""
 FIGURES = 4
 """Number of these columns."""
 
@@ -55,4 +55,5 @@ class VariantMesh:
         line = LineFigures.of(rows[..., COLUMNS:])
         pressure = np.where(line.largest_pressure_MPa > 0.0, line.largest_pressure_MPa, np.nan)
         peak_to_peak = 1e3 * np.ptp(rows[..., 0], axis=0)
-        return np.column_stack([peak_to_peak, line.face_load_factor, pressure, line.on_edges.max(axis=0)]), ""
+        factor = np.where(line.is_plane, np.nan, line.face_load_factor)
+        return np.column_stack([peak_to_peak, factor, pressure, line.on_edges.max(axis=0)]), ""

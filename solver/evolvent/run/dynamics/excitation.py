@@ -79,7 +79,7 @@ def solved_excitation(call: Call, loads: SceneTorques, part: str = "") -> Solved
     companion = CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements, again.reason)
     mended = loaded.deflected and not problem.options.deflected_flanks
     own = MeshExcitation(unloaded, loaded)
-    doubtful = large_bars(harmonic_rows(own, companion)) if coarse is not None else ()
+    doubtful = large_bars(harmonic_rows(own, companion)) if coarse is not None and not part else ()
     said = loads.warnings, [ON_DEFLECTED] * mended, filter(None, [left_out, again.reason]), doubtful
     return SolvedExcitation(
         own, companion, replace(timings, error_bars=again.seconds), tuple(each for part in said for each in part)

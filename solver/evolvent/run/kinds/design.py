@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
+import hashlib
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
 from typing import ClassVar, Self
@@ -27,22 +27,21 @@ from evolvent.run.design.design_space import DesignSpace
 from evolvent.run.design.evaluation import KEPT, Evaluation, Variants, design_store, kept_variants, no_variants
 from evolvent.run.design.ranking import Ranking
 from evolvent.run.design.search import search
-from evolvent.run.design.tables import DESIGN, variant_rows
+from evolvent.run.design.tables import BAND, DESIGN, variant_rows
 from evolvent.run.design.variant_mesh import VariantMesh
 from evolvent.run.dynamics.excitation import solved_excitation
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.line_level import LINE
 from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.design import DesignSection, expanded
 from evolvent.scene.schema.errors import NOTHING, InputProblem, SceneError
-from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import line_scene
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.modifications.modifications import OVER_FACE
 
-PLANE: tuple[SkipName, ...] = ("plane",)
-"""Part that is computed in full where variants differ over the face."""
 PICTURE = TablePicture("design.png", (SCENE_TITLE, DESIGN, BEST), "evolvent.run.design.figures:design_figure")
 
 
@@ -78,7 +77,7 @@ class Design(Computation[SolvedDesign]):
     command: ClassVar[str] = "design"
     in_line_contact: ClassVar[bool] = True
     outputs: ClassVar[Outputs] = Outputs(
-        (DESIGN.name, BEST.name), (PICTURE,), (BEST_SCENE,), (KEPT, "results/excitation_*.npz"), design_lines
+        (DESIGN.name, BEST.name, BAND.name), (PICTURE,), (BEST_SCENE,), (KEPT, "results/excitation_*.npz"), design_lines
     )
 
     @classmethod
@@ -99,10 +98,22 @@ class Design(Computation[SolvedDesign]):
     @cached_property
     def on_lines(self) -> Scene:
         """The scene in line contact under its lightest torque; in space where a key varies over the face."""
+        return line_scene(under_torque(self._solved, 1e-3 * self.loads.torques[0]))
+
+    @property
+    def _over_face(self) -> list[str]:
+        """Keys that vary or deviate over the face of a spur pair, whose variants are all computed in space then."""
         names = [*expanded(self.section.vary), *expanded(self.section.tolerances)]
-        over_face = any(name.partition(".")[2] in (*OVER_FACE, "misalignment_um") for name in names)
-        lightest = under_torque(self.scene, 1e-3 * self.loads.torques[0])
-        return line_scene(lightest, *(PLANE if over_face else ()))
+        is_spur = self.scene.pair.helix_angle_deg == 0.0
+        return [name for name in names if is_spur and name.partition(".")[2] in (*OVER_FACE, "misalignment_um")]
+
+    @cached_property
+    def _solved(self) -> Scene:
+        """The scene as it is computed, in line contact and with the contact resolved."""
+        own = self.loads.scene.exact.parts
+        if not self._over_face or "plane" in own:
+            return self.loads.scene
+        return self.loads.scene.changed("exact", parts=(*own, "plane"))
 
     @property
     def space(self) -> DesignSpace:
@@ -126,8 +137,21 @@ class Design(Computation[SolvedDesign]):
 
     def check(self) -> None:
         """Raises SceneError without a section [design], and for a number of positions without harmonics."""
-        assert self.section
+        figures = {*self.section.targets, *(limit.figure for limit in self.section.limits)}
+        if "face_load_factor" in figures and gear_problem(self.on_lines).is_plane:
+            found, allowed = "face_load_factor of gears in the plane", "figures that they have"
+            remedy = "leave it out, or let a modification over the face or pair.misalignment_um vary or deviate"
+            raise SceneError([InputProblem("design", found, allowed, remedy)])
         check_positions(self.scene)
+
+    def warnings(self) -> Iterable[str]:
+        """Warnings on charts and flanks, and on a spur pair that is computed in space."""
+        yield from super().warnings()
+        if self._over_face:
+            yield (
+                f"In space, as {', '.join(self._over_face)} varies over the face: the transmission error of a spur "
+                "pair differs from that in the plane by some per cent."
+            )
 
     def solve(self, call: Call) -> SolvedDesign:
         """Searches variants, then checks the best, see `Computation.solve`."""
@@ -139,6 +163,7 @@ class Design(Computation[SolvedDesign]):
         with call.beginning(self.scene, gears.prepare) as prepare:
             shared = call.preparing(prepare)
             evaluation = Evaluation(call, store, cache(lambda: self._mesh(shared)), known)
+            evaluation.expected = 1 + min(space.size, self.section.samples)
             evaluation.of(space.as_it_stands[None])
             search(space, evaluation, bool(self._verified))
             found, seconds = evaluation.asked, time.perf_counter() - begin
@@ -146,8 +171,7 @@ class Design(Computation[SolvedDesign]):
             checked = [self._checked(call, shared, n, found.values[n]) for n in dict.fromkeys([0, *best])]
             first, *others = ranked(checked, best, self.section, size[1])
             if first.rank and self.section.tolerances:
-                deviating = evaluation.of(space.deviating(found.values[first.variant]))
-                first = replace(first, band=deviating.figures)
+                first = replace(first, band=evaluation.of(space.deviating(found.values[first.variant])))
         return SolvedDesign(found, (first, *others), seconds)
 
     def results(self, call: Call, solved: SolvedDesign) -> Results:
@@ -155,11 +179,13 @@ class Design(Computation[SolvedDesign]):
         torques, space = self.loads.torques, self.space
         best = [row for each in solved.checked for row in each.rows(torques)]
         tables = [DESIGN.of(variant_rows(self.section, space.keys, solved.variants)), BEST.of(best)]
+        if solved.best is not None and solved.best.band is not None:
+            tables.append(BAND.of(variant_rows(self.section, space.keys, solved.best.band)))
         if solved.best is not None:
-            chosen = replace(space, scene=self.scene).scene_of(solved.variants.values[solved.best.variant])
+            chosen = replace(space, scene=self._solved).scene_of(solved.variants.values[solved.best.variant])
             text = chosen.model_copy(update={"design": None}).resolved_toml()
             tables.append(Filled(BEST_SCENE, partial(_write_scene, text)))
-        said = design_warnings(space, solved.variants, solved.checked, solved.best)
+        said = design_warnings(space, solved.variants, solved.checked, solved.best, bool(self._verified))
         return Results(self.scene, tables, [*said], timings=solved.timings)
 
     def _on_lines(self, variant: Floats) -> SceneTorques:
@@ -168,7 +194,7 @@ class Design(Computation[SolvedDesign]):
 
     def _resolved(self, variant: Floats) -> SceneTorques:
         """A variant (k,) at the level of the scene under all torques."""
-        return replace(self.loads, scene=replace(self.space, scene=self.loads.scene).scene_of(variant))
+        return replace(self.loads, scene=replace(self.space, scene=self._solved).scene_of(variant))
 
     def _mesh(self, call: Call) -> VariantMesh:
         """The condensed gears for all variants. Collective."""
@@ -180,14 +206,26 @@ class Design(Computation[SolvedDesign]):
     def _checked(self, call: Call, shared: Call, number: int, variant: Floats) -> Checked:
         """A variant (k,) with its error bars and, where that is asked for, with the contact resolved. Collective.
         shared: call with the gears in line contact."""
-        line, resolved = None, None
-        with contextlib.suppress(EdgeContact):
-            line = solved_excitation(shared, self._on_lines(variant), f"line_{number}_")
-        if self._verified:
-            resolved = solved_excitation(call, self._resolved(variant), f"resolved_{number}_")
-        return Checked(number, line, resolved)
+        name, reasons, line, resolved = _hash(variant), [], None, None
+        try:
+            line = solved_excitation(shared, self._on_lines(variant), f"line_{name}_")
+        except EdgeContact:
+            pass  # its rows say so
+        except ResultError as error:
+            reasons.append(f"line contact: {error}")
+        try:
+            if self._verified:
+                resolved = solved_excitation(call, self._resolved(variant), f"resolved_{name}_")
+        except ResultError as error:
+            reasons.append(f"resolved contact: {error}")
+        return Checked(number, line, resolved, tuple(reasons))
 
 
 def _write_scene(text: str, folder: RunFolder) -> None:
     """Writes the scene with the best variant."""
     folder.write_text(BEST_SCENE, text)
+
+
+def _hash(variant: Floats) -> str:
+    """Name of a variant (k,) in the names of files, whatever its number."""
+    return hashlib.sha256(variant.tobytes()).hexdigest()[:12]

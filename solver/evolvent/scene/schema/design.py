@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self, get_args
 
 from pydantic import BeforeValidator, ValidationError, field_validator, model_validator
 
@@ -17,13 +17,14 @@ MODIFICATIONS = tuple(name for name, field in FlankKeys.model_fields.items() if 
 """Keys of [pinion] and [wheel] that may vary."""
 MISALIGNMENT = f"{PAIR}.misalignment_um"
 """Key that may deviate, but is nobody's choice."""
-FIGURES = "transmission_error_peak_to_peak_um", "face_load_factor", "largest_pressure_MPa"
-"""Figures of a variant that can be targets and have limits."""
 Figure = Literal["transmission_error_peak_to_peak_um", "face_load_factor", "largest_pressure_MPa"]
+FIGURES: tuple[Figure, ...] = get_args(Figure)
+"""Figures of a variant that can be targets and have limits."""
+ROUNDING = 1e-6
+"""Part of a range by which its steps may miss its end."""
 MOST_VARIABLES, MOST_SAMPLES, MOST_VERIFIED = 8, 100_000, 10
 KEY = (
-    f"the name of a flank modification, for example pinion.{MODIFICATIONS[0]}; {BOTH}.{MODIFICATIONS[0]}: the same on "
-    "pinion and wheel"
+    f"pinion, wheel or {BOTH} (the same on both gears), a dot, and one of {', '.join(MODIFICATIONS)}"
 )
 
 
@@ -90,7 +91,8 @@ class DesignSection(SceneSection):
     )
     limits: Annotated[tuple[Limit, ...], rows(Limit)] = key(
         "largest values of figures, under every torque: rows of figure and value",
-        "a list of rows [figure, largest value]", 'write for example limits = [["face_load_factor", 1.3]]', default=(),
+        f"a list of rows [figure, largest value], each of another figure: {', '.join(FIGURES)}",
+        'write for example limits = [["face_load_factor", 1.3]]', default=(),
     )
     search: Literal["optimum", "sobol"] = key(
         'how variants are chosen where there are more than samples: "optimum" by differential evolution towards the '
@@ -148,6 +150,20 @@ class DesignSection(SceneSection):
             if not (row.lowest < row.highest and 0.0 < row.step <= row.highest - row.lowest):
                 allowed = "a lowest value below the highest, and a step above 0 that is not larger than their distance"
                 raise validation_error(InputProblem("", shown(list(row)), allowed, "mend that row"))
+            steps = (row.highest - row.lowest) / row.step
+            if abs(steps - round(steps)) > ROUNDING * steps:
+                last = row.lowest + math.floor(steps) * row.step
+                allowed = "a step that leads from the lowest value to the highest"
+                remedy = f"end the range at {last:.6g} or at {last + row.step:.6g}, or give another step"
+                raise validation_error(InputProblem("", shown(list(row)), allowed, remedy))
+        return values
+
+    @field_validator("targets", "limits")
+    @classmethod
+    def _each_figure_once(cls, values: tuple[Any, ...]) -> tuple[Any, ...]:
+        names = [each if isinstance(each, str) else each[0] for each in values]
+        if twice := sorted({name for name in names if names.count(name) > 1}):
+            raise validation_error(InputProblem("", f"{twice[0]} more than once", "each once", "delete one of them"))
         return values
 
     @field_validator("tolerances", "limits")

@@ -9,7 +9,7 @@ from evolvent.run.design.design_space import DesignSpace
 from evolvent.scene.gear_pair import ImpossibleGears
 from tests.support.gear_cases import spur_scene
 
-VARY = '[["both.tip_relief_um",0.0,10.0,4.0],["pinion.profile_slope_um",-1.0,1.0,1.0]]'
+VARY = '[["both.tip_relief_um",0.0,8.0,4.0],["pinion.profile_slope_um",-1.0,1.0,1.0]]'
 
 
 def space(*settings: str, vary: str = VARY) -> DesignSpace:
@@ -19,7 +19,7 @@ def space(*settings: str, vary: str = VARY) -> DesignSpace:
 
 
 def test_lattice_has_each_combination_once() -> None:
-    """0, 4, 8 µm (12 would exceed 10) with −1, 0, 1 µm: nine points, pinion and wheel alike in the relief."""
+    """0, 4, 8 µm with −1, 0, 1 µm: nine points, pinion and wheel alike in the relief."""
     own = space()
     assert own.keys == ("pinion.tip_relief_um", "wheel.tip_relief_um", "pinion.profile_slope_um") and own.size == 9
     found = own.variants(own.lattice())
@@ -70,6 +70,13 @@ def test_deviations_are_within_the_tolerances() -> None:
     assert corners <= {(a, b, c) for a, b, _, c in found.tolist()}
     assert found[:, :2].min() == 0.0 and found[:, :2].max() == 5.0 and np.abs(found[:, 3]).max() == 5.0
     assert len({tuple(row) for row in found.tolist()}) > 30
+
+
+def test_small_amounts_within_tolerances_are_none() -> None:
+    """A crowning of 0 ± 2 µm: amounts below 0.1 µm would be refused as millimetres, and are 0."""
+    own = space('design.tolerances=[["wheel.profile_crowning_um",2.0]]')
+    found = own.deviating(np.zeros(4))[:, 3]
+    assert ((found == 0.0) | (found >= 0.1)).all() and found.max() == 2.0
 
 
 def test_without_tolerances_there_is_the_variant_alone() -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from evolvent.run.design.ranking import Ranking
-from evolvent.scene.schema.design import DesignSection, Vary
+from evolvent.scene.schema.design import FIGURES, DesignSection, Vary
 from evolvent_meshes.arrays import Floats
 
-ERROR, FACTOR, PRESSURE = "transmission_error_peak_to_peak_um", "face_load_factor", "largest_pressure_MPa"
+ERROR, FACTOR, PRESSURE = FIGURES
 VARY = (Vary("both.tip_relief_um", 0.0, 10.0, 1.0),)
 
 
@@ -40,23 +40,26 @@ def test_limits_leave_out() -> None:
 
 def test_costs_lead_back_to_what_is_allowed() -> None:
     """The more a limit is exceeded, the more load on edges, the higher the cost; worst is a variant without figures."""
-    nothing = (np.nan, np.nan, np.nan, np.nan)
+    nothing, without_factor = (np.nan, np.nan, np.nan, np.nan), (0.1, np.nan, 900.0, 0.0)
     ranking = Ranking(section(limits=[[FACTOR, 1.4]]), figures(
         (9.0, 1.0, 900.0, 0.0), (1.0, 1.5, 900.0, 0.0), (1.0, 9.0, 900.0, 0.0), (1.0, 1.0, 900.0, 0.02),
         (1.0, 1.0, 900.0, 0.5), nothing,
     ))
     costs = ranking.cost(ERROR)
     assert np.isfinite(costs).all() and (np.diff(costs) > 0.0).all()
+    unknown = Ranking(section(limits=[[FACTOR, 1.4]]), figures(without_factor))
+    assert unknown.cost(ERROR)[0] == costs[-1] and not unknown.is_allowed[0]
 
 
 def test_edges_compete_where_their_contact_is_resolved() -> None:
     """5 % of the load on edges: no line contact; a candidate where the transmission error alone is asked for and the
-    contact will be resolved; with 20 % never."""
-    rows = figures((1.0, 1.0, 900.0, 0.2), (2.0, 1.0, 900.0, 0.05), (3.0, 1.0, 900.0, 0.0))
+    contact will be resolved; with 30 % never, though that variant is named where its estimate is smaller."""
+    rows = figures((1.0, 1.0, 900.0, 0.3), (2.0, 1.0, 900.0, 0.05), (3.0, 1.0, 900.0, 0.0))
     assert Ranking(section(), rows).checked == [2]
     assert Ranking(section(), rows, True).checked == [1, 2]
     assert Ranking(section(targets=[FACTOR]), rows, True).checked == [2]
     assert Ranking(section(limits=[[PRESSURE, 1e3]]), rows, True).checked == [2]
+    assert Ranking(section(), rows, True).left_out(2.0).tolist() == [0]
 
 
 def test_front_of_two_targets() -> None:
@@ -65,3 +68,16 @@ def test_front_of_two_targets() -> None:
     ranking = Ranking(section(targets=[ERROR, FACTOR]), figures(*((a, b, 900.0, 0.0) for a, b in rows)))
     assert ranking.front.tolist() == [True, True, True, False, True]
     assert ranking.best(2).tolist() == [0, 2]
+
+
+def test_equal_figures_leave_the_transmission_error_to_decide() -> None:
+    """Pressures that differ by 1e-10 are the same: the variant with 5 µm is best, and alone on the front."""
+    rows = figures((6.0, 1.0, 1176.9699673, 0.0), (5.0, 1.0, 1176.9699674, 0.0))
+    assert Ranking(section(targets=[PRESSURE]), rows).best(1).tolist() == [1]
+    assert Ranking(section(targets=[PRESSURE, ERROR]), rows).front.tolist() == [False, True]
+
+
+def test_variants_within_the_error_bar_of_the_best_one() -> None:
+    """2.0, 2.05 and 3 µm ± 0.1: one other cannot be told from the best."""
+    rows = figures((2.0, 1.0, 900.0, 0.0), (2.05, 1.0, 900.0, 0.0), (3.0, 1.0, 900.0, 0.0))
+    assert Ranking(section(), rows).like(0, 0.1).tolist() == [1]

@@ -12,7 +12,7 @@ from evolvent.results.drawing.style import png_of
 from evolvent.run.design.checked import BEST, BestRow
 from evolvent.run.design.design_lines import design_lines
 from evolvent.run.design.figures import design_figure
-from evolvent.run.design.tables import ALLOWED, DESIGN, EDGES, VariantRow
+from evolvent.run.design.tables import ALLOWED, BAND, DESIGN, EDGES, VariantRow
 from evolvent.run.kinds.design import Design
 from evolvent.run.kinds.excitation import Excitation
 from evolvent.scene.scene import SceneError, load_scene
@@ -92,6 +92,36 @@ def test_resumed_with_other_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert not (tmp_path / "best.toml").exists() and len(list(design_lines(tmp_path))) == 1
 
 
+def test_resumed_with_more_samples(tmp_path: Path) -> None:
+    """Another number of samples has other variants in another order: those that are known stay, and so do the best
+    one's positions, whatever its number is now."""
+    settings = (
+        'design.vary=[["pinion.tip_relief_um",20.0,40.0,1.0],["wheel.tip_relief_um",20.0,40.0,1.0]]',
+        "sweep.positions=4", "design.verified=0", 'design.search="sobol"', "design.samples={}",
+    )
+    few, more = ([each.format(count) for each in settings] for count in (4, 8))
+    designed(tmp_path, *few)
+    quietly(Design.of(spur_scene(*LONG, *more), (100.0,)), tmp_path, resume=True)
+    assert len(DESIGN.read(tmp_path)) > 5
+
+
+def test_spur_pair_with_deviations_over_the_face_is_in_space(tmp_path: Path) -> None:
+    """Problem: a misalignment within the tolerances; coarse and narrow, for algebra alone. Right: line contact and
+    resolved contact are both in space, a warning says so, and best.toml repeats it. K_Hβ is a figure then, and is
+    refused as a target in the plane."""
+    narrow = "pinion.face_width_mm=4", "wheel.face_width_mm=4", "load.torque_Nm=34", "mesh.order=1", "sweep.positions=3"
+    vary = 'design.vary=[["both.tip_relief_um",8.0,10.0,2.0]]', 'design.limits=[["face_load_factor",9.0]]'
+    over_face = 'design.tolerances=[["pair.misalignment_um",2.0]]', "design.verified=1"
+    warnings = quietly(Design.of(spur_scene(*LONG, *narrow, *vary, *over_face), (100.0,)), tmp_path)
+    assert any(sentence.startswith("In space, as pair.misalignment_um") for sentence in warnings)
+    assert load_scene(tmp_path / "best.toml").exact.parts == ("plane",)
+    (row,) = (each for each in BEST.read(tmp_path) if each.rank == 1)
+    assert 1.0 <= row.face_load_factor < row.band_highest_face_load_factor
+    assert len(BAND.read(tmp_path)) > 30
+    with pytest.raises(SceneError, match="face_load_factor of gears in the plane"):
+        quietly(Design.of(spur_scene(*LONG, *vary), (100.0,)), tmp_path / "plane")
+
+
 def test_refusals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Without [design], and without a list of torques that are all possible."""
     with pytest.raises(SceneError, match=r"design: found nothing"):
@@ -112,7 +142,7 @@ def test_picture_of_so_many_keys(keys: int) -> None:
     ]
     nan = float("nan")
     rows = [
-        BestRow(rank, number, torque, 1.0, 0.1, 300.0, 1.0, 1.1, 0.01, 900.0, 9.0, 1.1, 0.1, 300.0, 1.0, *[nan] * 4)
+        BestRow(rank, number, torque, 1.0, 0.1, 300.0, 1.0, 1.1, 0.01, 900.0, 9.0, 1.1, 0.1, 300.0, 1.0, 0, *[nan] * 6)
         for rank, number in ((1, 2), (0, 0)) for torque in (100.0, 200.0)
     ]
     for best in (rows, [row for row in rows if row.rank == 0]):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +15,7 @@ from evolvent.results.drawing.labels import UNITS, ending, label
 from evolvent.results.drawing.style import FAINT, HOLLOW, INK, PINION, PRESSURE_MAP, WHEEL, foot, sheet
 from evolvent.run.design.checked import BestRow
 from evolvent.run.design.tables import ALLOWED, BEYOND, EDGES, FRONT, VariantRow
+from evolvent.scene.schema.design import FIGURES
 from evolvent_meshes.arrays import Floats
 
 BEFORE, AFTER = WHEEL, PINION
@@ -21,12 +23,15 @@ ASIDE = 0.008
 """Distance of points of line and resolved contact from their torque, over the largest one: bars lie side by side."""
 LEAST_HEIGHT = 0.5
 """Ratio of the smallest and the largest value from which on an axis does not begin at zero."""
-TARGET = "transmission_error_peak_to_peak_um"
+TARGET = FIGURES[0]
 WORDS, WORST = "transmission error, peak to peak [µm]", "largest peak-to-peak transmission error [µm]"
 
 
-def design_figure(title: str, variants: Sequence[VariantRow], best: Sequence[BestRow]) -> Figure:
-    """Peak-to-peak transmission error over the torque before and after, beside that of all variants."""
+def design_figure(
+    title: str, section: Mapping[str, Any], variants: Sequence[VariantRow], best: Sequence[BestRow]
+) -> Figure:
+    """Peak-to-peak transmission error over the torque before and after, beside that of all variants. section: [design]
+    as scene.toml has it."""
     first = [row for row in best if row.rank == 1]
     before = [row for row in best if row.variant == 0]
     names = varying(variants)
@@ -39,7 +44,7 @@ def design_figure(title: str, variants: Sequence[VariantRow], best: Sequence[Bes
     elif len(names) == 2 and (grid := lattice(variants, names)) is not None:
         _map(figure, right, variants, names, grid, first)
     else:
-        _scatter(right, variants, first)
+        _scatter(right, section, variants, first)
     foot(figure, "Line contact without friction; bars: estimated error.", *_left_out(variants))
     return figure
 
@@ -202,19 +207,26 @@ def _hatched(axes: Axes, first: Floats, second: Floats, places: Sequence[Sequenc
                                  hatch=4 * hatch, lw=0.0))
 
 
-def _scatter(axes: Axes, variants: Sequence[VariantRow], best: Sequence[BestRow]) -> None:
-    """Largest pressure over the target: what is gained in one costs the other."""
+def _scatter(axes: Axes, section: Mapping[str, Any], variants: Sequence[VariantRow], best: Sequence[BestRow]) -> None:
+    """Another figure over the transmission error: the second target, else one with a limit, else the pressure."""
+    limits = dict(section.get("limits", ()))
+    name = next(each for each in (*section.get("targets", ()), *limits, FIGURES[2]) if each != TARGET)
     allowed, beyond = _target(variants)
-    pressure = np.array([row.largest_pressure_MPa for row in variants])
-    axes.scatter(beyond, pressure, s=12.0, color=FAINT, alpha=0.6)
-    axes.scatter(allowed, pressure, s=16.0, color=INK, alpha=0.7, lw=0.0)
+    other = np.array([getattr(row, name) for row in variants], dtype=float)
+    axes.scatter(beyond, other, s=14.0, color=FAINT, alpha=0.6, lw=0.0, label="beyond a limit")
+    axes.scatter(allowed, other, s=16.0, color=INK, alpha=0.7, lw=0.0, label="allowed")
     front = [number for number, row in enumerate(variants) if row.status == FRONT]
-    axes.scatter(allowed[front], pressure[front], s=34.0, color=AFTER, label="front", lw=0.0)
-    _mark(axes, [(_largest(best), pressure[row.variant]) for row in best[:1]])
     if front:
-        axes.legend(loc="best")
+        axes.scatter(allowed[front], other[front], s=34.0, color=AFTER, label="front", lw=0.0)
+    if np.isfinite(allowed[0]):
+        axes.scatter(allowed[:1], other[:1], s=46.0, color=BEFORE, marker="s", label="as it stands")
+    for key, draw in ((name, axes.axhline), (TARGET, axes.axvline)):
+        if key in limits:
+            draw(limits[key], color=FAINT, lw=1.2, ls="--", label="limit")
+    _mark(axes, [(_largest(best), other[row.variant]) for row in best[:1]])
+    axes.legend(loc="best")
     axes.set_xlabel(WORST)
-    axes.set_ylabel("largest p_0 [MPa]")
+    axes.set_ylabel(f"largest {label(name).removeprefix('largest ')}")
 
 
 def _largest(rows: Sequence[BestRow], kind: str = "transmission_error") -> float:

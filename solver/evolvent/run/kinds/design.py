@@ -18,7 +18,7 @@ from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.results.tables.table import SCENE_TITLE, Filled
+from evolvent.results.tables.table import SCENE_TITLE, Filled, SceneValue
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.design.checked import BEST, Checked, ranked
@@ -42,7 +42,9 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.modifications.modifications import OVER_FACE
 
-PICTURE = TablePicture("design.png", (SCENE_TITLE, DESIGN, BEST), "evolvent.run.design.figures:design_figure")
+SECTION = SceneValue("scene.toml", "design")
+"""Targets and limits, as the picture needs them."""
+PICTURE = TablePicture("design.png", (SCENE_TITLE, SECTION, DESIGN, BEST), "evolvent.run.design.figures:design_figure")
 
 
 @dataclass(frozen=True)

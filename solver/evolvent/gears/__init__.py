@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from evolvent.fem.material import Material as Material
     from evolvent.gears.contact.contact_points import ContactPoints as ContactPoints
     from evolvent.gears.gear_model import GearModel as GearModel
+    from evolvent.gears.line.line_result import EdgeContact as EdgeContact
+    from evolvent.gears.line.line_result import TooWide as TooWide
     from evolvent.gears.meshing.modifications import TooMuchRelief as TooMuchRelief
     from evolvent.gears.pressure.line_peaks import LinePeak as LinePeak
     from evolvent.gears.pressure.pitch_pressure import PitchPressure as PitchPressure

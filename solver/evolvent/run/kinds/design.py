@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
 from typing import ClassVar, Self
@@ -14,12 +14,14 @@ import numpy as np
 from evolvent.dynamics.excitation.loaded_mesh import EdgeContact
 from evolvent.dynamics.of_scene import check_positions
 from evolvent.gears.shared_gears import SharedGears
+from evolvent.gears.solution.certificates import BalanceError
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.table_pictures import TablePicture
 from evolvent.results.tables.table import SCENE_TITLE, Filled, SceneValue
 from evolvent.run.call import Call
+from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.design.checked import BEST, Checked, ranked
 from evolvent.run.design.design_lines import BEST_SCENE, design_lines, design_warnings
@@ -29,7 +31,7 @@ from evolvent.run.design.ranking import Ranking
 from evolvent.run.design.search import search
 from evolvent.run.design.tables import BAND, DESIGN, variant_rows
 from evolvent.run.design.variant_mesh import VariantMesh
-from evolvent.run.dynamics.excitation import solved_excitation
+from evolvent.run.dynamics.excitation import SolvedExcitation, solved_excitation
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.line_level import LINE
@@ -208,24 +210,32 @@ class Design(Computation[SolvedDesign]):
     def _checked(self, call: Call, shared: Call, number: int, variant: Floats) -> Checked:
         """A variant (k,) with its error bars and, where that is asked for, with the contact resolved. Collective.
         shared: call with the gears in line contact."""
-        name, reasons, line, resolved = _hash(variant), [], None, None
-        try:
-            line = solved_excitation(shared, self._on_lines(variant), f"line_{name}_")
-        except EdgeContact:
-            pass  # its rows say so
-        except ResultError as error:
-            reasons.append(f"line contact: {error}")
-        try:
-            if self._verified:
-                resolved = solved_excitation(call, self._resolved(variant), f"resolved_{name}_")
-        except ResultError as error:
-            reasons.append(f"resolved contact: {error}")
-        return Checked(number, line, resolved, tuple(reasons))
+        name = _hash(variant)
+        line = _attempted(lambda: solved_excitation(shared, self._on_lines(variant), f"line_{name}_"))
+        resolved: Attempt[SolvedExcitation] = Attempt()
+        if self._verified:
+            resolved = _attempted(lambda: solved_excitation(call, self._resolved(variant), f"resolved_{name}_"))
+        kinds = ("line contact", line), ("resolved contact", resolved)
+        reasons = tuple(f"{kind}: {each.reason}" for kind, each in kinds if each.reason)
+        return Checked(number, line.value, resolved.value, reasons)
 
 
 def _write_scene(text: str, folder: RunFolder) -> None:
     """Writes the scene with the best variant."""
     folder.write_text(BEST_SCENE, text)
+
+
+def _attempted(solve: Callable[[], SolvedExcitation]) -> Attempt[SolvedExcitation]:
+    """The excitation of a variant, or why there is none: others do without it. Edges that bear are no failure, its rows
+    say so. Collective. Raises BalanceError: what is out of balance is an error, whichever variant it is."""
+    try:
+        return Attempt(solve())
+    except EdgeContact:
+        return Attempt()
+    except BalanceError:
+        raise
+    except ResultError as error:
+        return Attempt(reason=str(error))
 
 
 def _hash(variant: Floats) -> str:

@@ -80,7 +80,7 @@ def _axis_label(variants: Sequence[VariantRow], name: str) -> str:
 
 def _left_out(variants: Sequence[VariantRow]) -> list[str]:
     count = sum(row.status not in (ALLOWED, FRONT) for row in variants)
-    said = f"{count} of {len(variants)} variants have no values here: edges of tips bear, or a limit is exceeded."
+    said = f"{count} of {len(variants)} variants are not allowed: edges of tips bear, or a limit is exceeded."
     return [said] * bool(count)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import socket
 import subprocess
@@ -35,7 +36,7 @@ def example(command: str) -> list[str]:
     """The words behind `evolvent` of the first example of a command's help, with settings that make it short."""
     found = re.search(rf"^ *(?:mpirun.* )?evolvent ({command}\b.*)$", COMMANDS[command], re.MULTILINE)
     assert found is not None, f"wanted an example in the help of `evolvent {command}`"
-    return [*found[1].split(), *(word for setting in FEWER.get(command, ()) for word in ("--set", setting))]
+    return [*shlex.split(found[1]), *(word for setting in FEWER.get(command, ()) for word in ("--set", setting))]
 
 
 @pytest.fixture

@@ -32,7 +32,10 @@ NAMES = ("docker", "evolvent", "git", "make", "paraview", "python")
 
 def evolvent(words: list[str]) -> None:
     """The command line of this checkout."""
-    settings = [word for setting in FEWER.get("".join(words[:1]), ()) for word in ("--set", setting)]
+    fewer = FEWER.get("".join(words[:1]), ())
+    if fewer == CHEAP and "line" in words:
+        fewer = FEW  # line contact has no width to be resolved
+    settings = [word for setting in fewer for word in ("--set", setting)]
     os.execv(sys.executable, [sys.executable, "-m", "evolvent", *words, *settings])
 
 

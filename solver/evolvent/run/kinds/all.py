@@ -115,8 +115,7 @@ evolvent transient demos/he2022.toml --out out/transient --level quick --set tra
     K_Hβ and pressure of all variants in line contact, on gears that are condensed once; the best ones with the contact
     resolved beside.
     """, """\
-evolvent design demos/he2022.toml --out out/design --percent 50,100 \\
---set 'design.vary=[["both.tip_relief_um",0,30,1]]'
+evolvent design demos/he2022.toml --out out/design --set design.vary='[["both.tip_relief_um",0,30,2]]'
 mpirun -n 2 evolvent design demos/yang2022_design.toml --out out/design""",
         percents=(25.0, 50.0, 75.0, 100.0), in_studies=False,
     ),

@@ -49,11 +49,11 @@ class FrictionRow:
     tooth_force_percent: float
     """Largest deviation of a tooth pair's force at μ = 0.1, of the load."""
     without_tooth_force_percent: float
-    """The same at μ = 0."""
+    """Largest deviation of a tooth pair's force at μ = 0, of the load."""
     position_percent: float
     """Largest deviation of the transmission error of a position at μ = 0.1, of the deflection."""
     without_position_percent: float
-    """The same at μ = 0."""
+    """Largest deviation of the transmission error at μ = 0, of the mean deflection."""
     peak_to_peak_um: float
     """Peak-to-peak transmission error of the resolved contact at μ = 0.1."""
     peak_to_peak_off_um: float

@@ -50,10 +50,10 @@ class StartRow:
     """Newton iterations of the first search of a position from the nominal contact lines, mean over the positions."""
     nominal_most: int
     last_mean: float
-    """The same from the rotation and the contact patch of the position before, of all positions but the first one."""
+    """Iterations from the rotation and the contact patch of the position before, of all positions but the first one."""
     last_most: int
     line_mean: float
-    """The same from line contact alone, of the positions that have such a start."""
+    """Iterations from line contact alone, of the positions that have such a start."""
     line_most: int
     nominal_searches: float
     """Searches of a position, mean over the positions."""

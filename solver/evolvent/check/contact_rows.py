@@ -11,6 +11,7 @@ from evolvent.check.text_table import Row, table
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
 from evolvent.dynamics.results.curves import LOADED, TANGENT, CoarseExcitation, pitch_curves
+from evolvent.dynamics.results.line_facts import line_facts
 from evolvent.gears.gear_model import Mesher, prepare_model
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
 from evolvent.gears.meshing.companion_meshes import companion_mesh
@@ -59,16 +60,16 @@ def contact_table(scene: Scene) -> str:
 
 def _figures(excitation: MeshExcitation, coarse: MeshExcitation) -> Iterator[Row]:
     """Figures under the only torque, with their errors. coarse: on the companion's meshes."""
-    curves = next(iter(pitch_curves(excitation, CoarseExcitation(coarse))))
-    error, stiffness, line, other = curves[LOADED], curves[TANGENT], excitation.loaded.line, coarse.loaded.line
-    assert line is not None and other is not None
-    face = ("face load factor", "K_Hβ", "", 2, line.face_load_factor[0], line.face_load_error(other)[0])
-    pressure = line.largest_pressure_MPa[0], line.pressure_error(other)[0]
+    companion = CoarseExcitation(coarse)
+    curves, facts = next(iter(pitch_curves(excitation, companion))), line_facts(excitation, companion)
+    error, stiffness, factor = curves[LOADED], curves[TANGENT], facts.face_load_factor[0]
+    pressure = facts.largest_pressure_MPa[0], facts.largest_pressure_MPa_error[0]
     for name, symbol, unit, digits, value, bar in (
         ("transmission error, mean", "", "µm", 2, np.mean(error.values), error.mean_error),
         ("transmission error, peak to peak", "", "µm", 2, np.ptp(error.values), error.peak_to_peak_error),
         ("tangent mesh stiffness, mean", "c", "N/µm", 1, np.mean(stiffness.values), stiffness.mean_error),
-        *([] if line.is_plane else [face]),
+        ("face load factor", "K_Hβ", "", 2, factor, facts.face_load_factor_error[0]),
         ("Hertzian pressure away from edges, kinks", "p_0", "MPa", 0, *pressure),
     ):
-        yield Row(name, symbol, unit, (fixed(float(value), digits), fixed(float(bar), digits)))
+        if not np.isnan(value):  # gears in the plane have no face load factor
+            yield Row(name, symbol, unit, (fixed(float(value), digits), fixed(float(bar), digits)))

@@ -12,12 +12,12 @@ import pytest
 
 from evolvent.gears.line.line_gears import LineGears, LinePosition
 from evolvent.gears.line.line_result import EdgeContact
-from evolvent.results.archive.store import Store
 from evolvent.run.kinds.all import KINDS
 from evolvent.run.kinds.loads import Loads
 from evolvent.run.kinds.losses import LOSSES, Losses
 from evolvent.run.kinds.run import Run
 from evolvent.scene.scene import Scene, SceneError, scene_from_text
+from tests.support.computing.interruption import Interrupted, interrupted
 from tests.support.computing.quiet import quietly
 from tests.support.computing.redrawn import redrawn
 from tests.support.computing.same_tables import same_tables
@@ -31,10 +31,6 @@ RELIEVED = tuple(
 LINE = (*RELIEVED, "mesh.level=line", "sweep.positions=4", "contact.friction=[0.0,0.1]")
 BARS = "output.error_bars=true"
 LINEAR = tuple(f'{gear}.tip_relief_form="linear"' for gear in ("pinion", "wheel"))
-
-
-class Interrupted(BaseException):
-    """Raised in place of a signal."""
 
 
 def line_scene(*settings: str) -> Scene:
@@ -84,26 +80,15 @@ def test_interrupted_run_solves_nothing_again(whole: Path, tmp_path: Path, monke
     """Interrupted in the middle and resumed: each of the 4 positions of the meshes and of their companion is made once
     in all; the same tables."""
     made: list[float] = []
-    position, write = LineGears.position, Store.write
+    position = LineGears.position
 
     def counted(gears: LineGears, angle: float) -> LinePosition:
         made.append(angle)
         return position(gears, angle)
 
     monkeypatch.setattr(LineGears, "position", counted)
-    with monkeypatch.context() as patch:
-        stored = 0
-
-        def written(store: Store, *given: object) -> None:
-            nonlocal stored
-            write(store, *given)  # type: ignore[arg-type]
-            stored += 1
-            if stored == 6:
-                raise Interrupted
-
-        patch.setattr(Store, "write", written)
-        with pytest.raises(Interrupted):
-            quietly(Run.of(line_scene(BARS)), tmp_path)
+    with interrupted(6), pytest.raises(Interrupted):
+        quietly(Run.of(line_scene(BARS)), tmp_path)
     assert 0 < len(made) < 8
     quietly(Run.of(line_scene(BARS)), tmp_path, resume=True)
     assert len(made) <= 9  # one may have been made, but not stored

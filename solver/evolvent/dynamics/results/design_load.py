@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.results.curves import LOADED, CoarseExcitation, pitch_curves
+from evolvent.dynamics.results.line_facts import line_facts
 from evolvent.gears.problem.iso_stiffness import stiffnesses
 from evolvent.results.tables.table import Record
 from evolvent_meshes.gears.pair import GearPair
@@ -99,21 +101,9 @@ def excitation_facts(
 
 def _of_line_contact(excitation: MeshExcitation, companion: CoarseExcitation) -> dict[str, float | None]:
     """Face load factor and largest pressure under the heaviest torque, with their errors."""
-    own = excitation.loaded.line
-    coarse = None if companion.excitation is None else companion.excitation.loaded.line
-    found: dict[str, float | None] = {
-        f"{name}{end}": None for name in ("face_load_factor", "largest_pressure_MPa") for end in ("", "_error")
-    }
-    if own is None:
-        return found
-    found["largest_pressure_MPa"] = float(own.largest_pressure_MPa[-1])
-    if not own.is_plane:
-        found["face_load_factor"] = float(own.face_load_factor[-1])
-    if coarse is not None:
-        found["largest_pressure_MPa_error"] = float(own.pressure_error(coarse)[-1])
-        if not own.is_plane:
-            found["face_load_factor_error"] = float(own.face_load_error(coarse)[-1])
-    return found
+    facts = line_facts(excitation, companion)
+    heaviest = {field.name: float(getattr(facts, field.name)[-1]) for field in fields(facts)}
+    return {name: None if math.isnan(value) else value for name, value in heaviest.items()}
 
 
 def _design(

@@ -33,6 +33,8 @@ direction."""
 class LineFriction:
     """Friction at a position of m stations, for each unit of the friction coefficient."""
 
+    direction: Floats
+    """(p,) direction of friction at the points of the stations, see `direction_at`."""
     compliance: Floats
     """(m, m) work of normal displacements under tangential loads [mm² per N·mm], added to B."""
     moments: tuple[Floats, Floats]
@@ -54,9 +56,10 @@ def direction_at(pair: GearPair, roll_distance: Floats, length: Floats) -> Float
     return np.asarray(np.where((half > least) & (np.abs(ξ) < half), ξ / half, np.where(ξ > least, 1.0, -1.0)))
 
 
-def line_friction(pair: GearPair, stations: Stations, compliance: Floats) -> LineFriction:
-    """Friction at a position. compliance: (m, m) of `friction_compliance`."""
-    ξ, hats, along = stations.roll_distance, stations.hats, sliding_direction(pair, stations)
+def line_friction(pair: GearPair, stations: Stations, direction: Floats, compliance: Floats) -> LineFriction:
+    """Friction at a position. direction: (p,) of `sliding_direction`. compliance: (m, m) of `friction_compliance`."""
+    ξ, hats = stations.roll_distance, stations.hats
     rolls = [pair.pitch_point_roll_lengths[gear] + gear.sign * ξ for gear in Member]
-    pinion, wheel = (np.asarray(hats.T @ (along * ρ)) / gear.base_radius for ρ, gear in zip(rolls, pair.gears))
-    return LineFriction(compliance, (pinion, wheel), np.asarray(hats.T @ (along * ξ)) * (1.0 + 1.0 / pair.ratio))
+    pinion, wheel = (np.asarray(hats.T @ (direction * ρ)) / gear.base_radius for ρ, gear in zip(rolls, pair.gears))
+    sliding = np.asarray(hats.T @ (direction * ξ)) * (1.0 + 1.0 / pair.ratio)
+    return LineFriction(direction, compliance, (pinion, wheel), sliding)

@@ -194,7 +194,7 @@ class LineGears:
             return None
         direction = sliding_direction(self.pair, stations)
         compliance = friction_compliance(self.pair, self.gears, stations, shift, width, direction)
-        return line_friction(self.pair, stations, compliance)
+        return line_friction(self.pair, stations, direction, compliance)
 
     def _to_tip(self, stations: Stations, shift: Floats) -> Floats:
         """Distances (p,) from the nearest edge of a tip [mm]. shift: (p,) as of `LineGap`."""

@@ -9,7 +9,6 @@ import scipy.sparse as sp
 
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.line.line_compliance import carried_arcs, nodal_loads
-from evolvent.gears.line.line_friction import sliding_direction
 from evolvent.gears.line.line_gears import LineGears
 from evolvent.gears.line.line_points import line_points
 from evolvent.gears.line.line_result import LineResult
@@ -70,12 +69,17 @@ def loaded_nodes(gears: LineGears, member: Member, result: LineResult) -> Loaded
     gear, position, load = gears.gears[member], result.position, result.equilibrium.load
     stations = position.stations
     arc = carried_arcs(gears.pair, member, stations, position.place)
-    signed = sp.csr_matrix(sp.diags(sliding_direction(gears.pair, stations)) @ stations.hats)
-    normal, along = (nodal_loads(gear, stations, arc, position.width, hats) for hats in (stations.hats, signed))
+    normal, along = nodal_loads(gear, stations, arc, position.width, stations.hats), None
+    if result.friction:
+        assert position.friction is not None
+        signed = sp.csr_matrix(sp.diags(position.friction.direction) @ stations.hats)
+        along = nodal_loads(gear, stations, arc, position.width, signed)
     rows, forces = [], []
     for tooth in result.teeth:
         q = np.where(stations.tooth == tooth, load, 0.0)
-        vectors = (normal @ q)[:, None] * gear.inwards + result.friction * (along @ q)[:, None] * gear.towards_tip
+        vectors = (normal @ q)[:, None] * gear.inwards
+        if along is not None:
+            vectors += result.friction * (along @ q)[:, None] * gear.towards_tip
         bears, number = vectors.any(axis=1), gear.sign * tooth
         R = turn(2.0 * np.pi * number / gear.gear.z, vectors.shape[1])
         rows.append(np.column_stack([np.full(bears.sum(), number), gear.nodes[bears]]))

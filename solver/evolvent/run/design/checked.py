@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evolvent.dynamics.excitation.line_mesh import LineFigures
 from evolvent.dynamics.results.curves import LOADED, TANGENT, pitch_curves
+from evolvent.dynamics.results.line_facts import line_facts
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.tables.table import Table
@@ -153,34 +153,12 @@ def _figures(solved: SolvedExcitation | None, count: int) -> Mapping[str, Pairs]
     unknown: Pairs = [(math.nan, math.nan)] * count
     if solved is None:
         return dict.fromkeys(("error", "stiffness", "face_load", "pressure"), unknown)
-    curves = list(pitch_curves(solved.excitation, solved.companion))
+    excitation, companion = solved.excitation, solved.companion
+    curves, facts = list(pitch_curves(excitation, companion)), line_facts(excitation, companion)
     found = {
         "error": [(float(np.ptp(each[LOADED].values)), each[LOADED].peak_to_peak_error) for each in curves],
         "stiffness": [(float(np.mean(each[TANGENT].values)), each[TANGENT].mean_error) for each in curves],
-        "face_load": _face_load(solved), "pressure": _pressure(solved),
+        "face_load": list(zip(facts.face_load_factor.tolist(), facts.face_load_factor_error.tolist())),
+        "pressure": list(zip(facts.largest_pressure_MPa.tolist(), facts.largest_pressure_MPa_error.tolist())),
     }
     return {name: [*pairs, *unknown[len(pairs) :]] for name, pairs in found.items()}
-
-
-def _face_load(solved: SolvedExcitation) -> Pairs:
-    """K_Hβ in line contact, with its errors; none in the plane and where the contact is resolved."""
-    line, coarse = solved.excitation.loaded.line, _coarse(solved)
-    if line is None or line.is_plane:
-        return []
-    errors = np.full(len(line.face_load_factor), np.nan) if coarse is None else line.face_load_error(coarse)
-    return list(zip(map(float, line.face_load_factor), map(float, errors)))
-
-
-def _coarse(solved: SolvedExcitation) -> LineFigures | None:
-    """Further figures of the coarse companion's line contact."""
-    coarse = solved.companion.excitation
-    return None if coarse is None else coarse.loaded.line
-
-
-def _pressure(solved: SolvedExcitation) -> Pairs:
-    """Largest p_0 in line contact, with its errors; none where the contact is resolved."""
-    line, coarse = solved.excitation.loaded.line, _coarse(solved)
-    if line is None:
-        return []
-    errors = np.full(len(line.largest_pressure_MPa), np.nan) if coarse is None else line.pressure_error(coarse)
-    return list(zip(map(float, line.largest_pressure_MPa), map(float, errors)))

@@ -16,7 +16,7 @@ from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import under_torque
+from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
 from evolvent.scene.scene import Scene
 
 NARROWEST = 0.35
@@ -66,6 +66,13 @@ class SceneTorques:
             "cent, and error bars too small. Leave these torques out, or take finer meshes: "
             f"--set load.mesh_torques_Nm=[{1e-3 * narrow[0]:.3g},{1e-3 * self.torques[-1]:.4g}]"
         ]
+
+
+def listed_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:
+    """The scene under torques of a list: those given in percent of its own or, without any, those that it lists. Raises
+    SceneError where one of them is refused."""
+    listed = listed_percents(scene, percents)
+    return scene_torques(with_percents(scene, listed), listed)
 
 
 def scene_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:

@@ -32,10 +32,10 @@ from evolvent.run.design.search import search
 from evolvent.run.design.tables import BAND, DESIGN, variant_rows
 from evolvent.run.design.variant_mesh import VariantMesh
 from evolvent.run.dynamics.excitation import SolvedExcitation, solved_excitation
-from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
+from evolvent.run.dynamics.scene_torques import SceneTorques, listed_torques
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.line_level import LINE
-from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
+from evolvent.scene.part_torque import under_torque
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.design import DesignSection, expanded
 from evolvent.scene.schema.errors import NOTHING, InputProblem, SceneError
@@ -87,8 +87,7 @@ class Design(Computation[SolvedDesign]):
     @classmethod
     def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
         """Variants of a scene under parts of its torque. Raises SceneError where one of them is refused."""
-        listed = listed_percents(scene, percents)
-        loads = scene_torques(with_percents(scene, listed), listed)
+        loads = listed_torques(scene, percents)
         return cls(loads.scene, loads)
 
     @property
@@ -101,7 +100,7 @@ class Design(Computation[SolvedDesign]):
 
     @cached_property
     def on_lines(self) -> Scene:
-        """The scene in line contact under its lightest torque; in space where a key varies over the face."""
+        """The scene in line contact under its lightest torque."""
         return line_scene(under_torque(self._solved, 1e-3 * self.loads.torques[0]))
 
     @property
@@ -140,7 +139,8 @@ class Design(Computation[SolvedDesign]):
         return 0 if self.scene.mesh.level == LINE else self.section.verified
 
     def check(self) -> None:
-        """Raises SceneError without a section [design], and for a number of positions without harmonics."""
+        """Raises SceneError without a section [design], for K_Hβ of gears in the plane, and for a number of positions
+        without harmonics."""
         figures = {*self.section.targets, *(limit.figure for limit in self.section.limits)}
         if "face_load_factor" in figures and gear_problem(self.on_lines).is_plane:
             found, allowed = "face_load_factor of gears in the plane", "figures that they have"

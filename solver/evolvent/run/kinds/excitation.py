@@ -13,8 +13,7 @@ from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.dynamics.excitation import EXCITATION_TABLES, SolvedExcitation, solved_excitation
 from evolvent.run.dynamics.excitation_lines import excitation_lines
 from evolvent.run.dynamics.kept_positions import KEPT
-from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
-from evolvent.scene.part_torque import listed_percents, with_percents
+from evolvent.run.dynamics.scene_torques import SceneTorques, listed_torques
 from evolvent.scene.scene import Scene
 
 
@@ -34,8 +33,7 @@ class Excitation(Computation[SolvedExcitation]):
     @classmethod
     def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
         """Excitation of a scene under parts of its torque. Raises SceneError where one of them is refused."""
-        listed = listed_percents(scene, percents)
-        return cls.under(scene_torques(with_percents(scene, listed), listed))
+        return cls.under(listed_torques(scene, percents))
 
     @classmethod
     def under(cls, loads: SceneTorques) -> Self:

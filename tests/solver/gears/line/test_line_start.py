@@ -52,7 +52,7 @@ def in_levels() -> GearModel:
 
 
 def without(model: GearModel) -> GearModel:
-    """The same gears, positions without starts."""
+    """Condensed gears whose positions have no starts."""
     return replace(model, starts=None)
 
 

@@ -45,7 +45,7 @@ def test_all_where_they_are_no_more_than_the_samples() -> None:
 
 
 def test_an_even_sample() -> None:
-    """Of 60 points, repetitions left out, each quarter of the square has some."""
+    """Sobol points: 60, repetitions left out; each quarter of the square has some."""
     found = np.array(sorted(searched("design.samples=60", 'design.search="sobol"')))
     assert 50 <= len(found) <= 60
     assert {tuple(row) for row in (found > 20.0).tolist()} == {(a, b) for a in (False, True) for b in (False, True)}

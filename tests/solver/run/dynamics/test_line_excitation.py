@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from evolvent.gears.line.line_gears import LineGears, LinePosition
-from evolvent.results.archive.store import Store
 from evolvent.run.dynamics.excitation_lines import excitation_lines
 from evolvent.run.kinds.all import KINDS
 from evolvent.run.kinds.excitation import Excitation
 from evolvent.scene.scene import SceneError
+from tests.support.computing.interruption import Interrupted, interrupted
 from tests.support.computing.quiet import quietly
 from tests.support.computing.same_tables import same_tables
 from tests.support.computing.small_kinds import small
@@ -26,10 +26,6 @@ RELIEVED = tuple(
 LINE = (*RELIEVED, "mesh.level=line", "sweep.positions=4", "output.error_bars=true")
 PERCENTS = [50.0, 100.0]
 SERVED = {"run", "loads", "losses", "excitation", "dynamics", "design"}
-
-
-class Interrupted(BaseException):
-    """Raised in place of a signal."""
 
 
 def excitation(*settings: str) -> Excitation:
@@ -57,20 +53,8 @@ def test_interrupted_excitation_solves_nothing_again(
 
     position = LineGears.position
     monkeypatch.setattr(LineGears, "position", counted)
-    with monkeypatch.context() as patch:
-        stored = 0
-        write = Store.write
-
-        def written(store: Store, *given: object) -> None:
-            nonlocal stored
-            write(store, *given)  # type: ignore[arg-type]
-            stored += 1
-            if stored == 3:
-                raise Interrupted
-
-        patch.setattr(Store, "write", written)
-        with pytest.raises(Interrupted):
-            quietly(excitation(), tmp_path)
+    with interrupted(3), pytest.raises(Interrupted):
+        quietly(excitation(), tmp_path)
     assert len(made) == 3
     quietly(excitation(), tmp_path, resume=True)
     assert len(made) == 8

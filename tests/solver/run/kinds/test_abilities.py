@@ -15,7 +15,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import copytree
-from typing import Any
 
 import pytest
 
@@ -25,11 +24,12 @@ from evolvent.gears.solution import certificates
 from evolvent.gears.solution.certificates import PitchImbalance
 from evolvent.gears.sweep import pitch_sweep
 from evolvent.results.archive.run_folder import FolderError
-from evolvent.results.archive.store import ArchiveError, Store
+from evolvent.results.archive.store import ArchiveError
 from evolvent.run.kinds.all import KINDS, Kind
 from evolvent.run.study.plan.study_file import COMPUTATIONS
 from evolvent.scene.scene import load_scene
 from evolvent.wear.gears import gear_wear
+from tests.support.computing.interruption import Interrupted, interrupted
 from tests.support.computing.quiet import quietly
 from tests.support.computing.redrawn import redrawn
 from tests.support.computing.same_tables import same_tables
@@ -39,10 +39,6 @@ from tests.support.running.processes import RunScript
 
 SOLVING = pitch_sweep, loaded_mesh, gear_wear
 """Modules that solve positions by `shared_position`."""
-
-
-class Interrupted(BaseException):
-    """Raised in place of a signal."""
 
 
 @dataclass(frozen=True)
@@ -58,19 +54,10 @@ class Whole:
 @contextmanager
 def counted(interrupted_after: int = 0) -> Iterator[Counter[str]]:
     """Counts solved positions and stored results. interrupted_after: number of results after which the call ends."""
-    counts, write = Counter[str](), Store.write
-
-    def written(store: Store, *given: Any) -> None:
-        write(store, *given)
-        counts["stored"] += 1
-        if counts["stored"] == interrupted_after:
-            raise Interrupted
-
-    with pytest.MonkeyPatch.context() as patch:
+    with interrupted(interrupted_after) as counts, pytest.MonkeyPatch.context() as patch:
         for module in SOLVING:
             solved = calling_first(module.shared_position, lambda *_, **__: counts.update(["positions"]))
             patch.setattr(module, "shared_position", solved)
-        patch.setattr(Store, "write", written)
         yield counts
 
 

@@ -126,7 +126,7 @@ class Design(Computation[SolvedDesign]):
     @property
     def sized(self) -> list[Scene]:
         """Scenes whose memory is looked at: in line contact and, where that is verified, with the contact resolved."""
-        return [self.on_lines, *([self.scene] if self._verified else [])]
+        return [self.on_lines, *([self._solved] if self._verified else [])]
 
     @property
     def heaviest(self) -> Scene:

@@ -10,15 +10,8 @@ from functools import partial
 from pathlib import Path
 
 from evidence import mutations
-from evidence.benchmarks.accuracy import (
-    face_load,
-    line_contact,
-    line_edges,
-    line_friction,
-    line_starts,
-    transient_bar_costs,
-    transient_bars,
-)
+from evidence.benchmarks.accuracy import face_load, transient_bar_costs, transient_bars
+from evidence.benchmarks.line import accuracy, edges, face_ends, friction, starts
 from evidence.checkout import ROOT
 from evidence.pages import abilities, blow, outputs, promises, readme, tutorial
 from evidence.pages.papers import he, he_bodies, he_models, he_transient, yang, yang_fatigue, yang_transient, zhang
@@ -57,8 +50,8 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "evidence.md": {"bars": bars, "face-load": face_load.table(docs)},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "line_contact.md": {
-            "accuracy": line_contact.said(docs), "friction": line_friction.said(docs), "edges": line_edges.said(docs),
-            "starts": line_starts.said(docs),
+            "face-ends": face_ends.said(docs), "accuracy": accuracy.said(docs), "friction": friction.said(docs),
+            "edges": edges.said(docs), "starts": starts.said(docs),
         },
         docs / "studies.md": {
             "keys": study_page.keys(), "figures": study_page.figures(), "measured": study_page.measured(docs),

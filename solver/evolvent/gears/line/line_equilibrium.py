@@ -18,6 +18,7 @@ from scipy.optimize import brentq
 
 from evolvent.contact.hertz import line_half_width
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.gears.line.face_ends import FaceEnds
 from evolvent_meshes.arrays import Bools, Floats
 
 STEPS, CLOSE = 60, 1e-10
@@ -47,6 +48,8 @@ class LineSystem:
     """(m,) work of a unit approach along the line of action on a unit load per length [mm]."""
     modulus: float
     """Contact modulus E* [MPa]."""
+    ends: FaceEnds | None = None
+    """Ends of the gears' faces, near which stations are softer; None in the plane."""
     moment: Floats | None = None
     """(m,) moment G of a unit load per length about the axis of the gear whose torque is given, over its base radius
     [mm]; None without friction, where it is H."""
@@ -75,9 +78,7 @@ def line_equilibrium(system: LineSystem, force: float) -> LineEquilibrium:
     active = q > 0.0
     for step in range(1, STEPS + 1):
         bounded = np.maximum(q, LEAST * mean)
-        narrower = system.log_width - np.log(line_half_width(bounded, system.radius, system.modulus))  # ln(w/b)
-        local = c * (0.25 + np.maximum(narrower, -math.log(WIDEST)))
-        logarithmic = 0.5 * c * (narrower > -math.log(WIDEST))
+        local, logarithmic = (c * part for part in _local(system, bounded))
         matrix, a = _matrix(system, active, L * (local - logarithmic)), np.flatnonzero(active)
         right = np.append(-L[a] * (system.gap[a] + logarithmic[a] * bounded[a]), force)
         solution = np.linalg.solve(matrix, right)
@@ -93,6 +94,17 @@ def line_equilibrium(system: LineSystem, force: float) -> LineEquilibrium:
             return LineEquilibrium(q, δ, 1.0 / float(unit[-1]), step)
         active = now
     raise NotConverged(f"line contact: wanted loads in equilibrium after {STEPS} steps, found them still changing")
+
+
+def _local(system: LineSystem, load: Floats) -> tuple[Floats, Floats]:
+    """φ/q over c = 2/(π E*), and the part of it that falls as dφ/dq = φ/q − that, at loads per length (m,) above 0."""
+    narrower = system.log_width - np.log(line_half_width(load, system.radius, system.modulus))  # ln(w/b)
+    carried, least = narrower > -math.log(WIDEST), np.maximum(narrower, -math.log(WIDEST))
+    if system.ends is None:
+        return 0.25 + least, 0.5 * carried
+    w = np.exp(system.log_width)
+    extra, falling = system.ends.extra(w * np.exp(-least), w)
+    return 0.25 + least + extra, (0.5 + falling) * carried
 
 
 def _on_springs(system: LineSystem, force: float) -> Floats:

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.contact.hertz import line_half_width
-from evolvent.fem.material import contact_modulus
+from evolvent.fem.material import Material, contact_modulus
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.line.face_ends import FaceEnds
 from evolvent.gears.line.flank_compliance import FlankCompliance
 from evolvent.gears.line.kinked_gap import with_kinks
 from evolvent.gears.line.line_compliance import friction_compliance, line_compliance
@@ -122,8 +123,8 @@ class LineGears:
     """Exact flanks of both gears."""
     gears: tuple[FlankCompliance, FlankCompliance]
     """Compliance of pinion and wheel along the flanks' normals."""
-    modulus: float
-    """Contact modulus E* [MPa]."""
+    materials: tuple[Material, Material]
+    """Materials of pinion and wheel."""
     free: Member
     """Gear that turns under its torque."""
     least_half_width: float = 0.0
@@ -133,8 +134,8 @@ class LineGears:
     def of(model: GearModel, friction: bool = False) -> LineGears:
         """The gears of a model that was condensed for line contact. friction: whether positions are to have some."""
         pinion, wheel = (FlankCompliance.of(body, friction) for body in model.bodies)
-        modulus = contact_modulus(*(body.material for body in model.bodies))
-        return LineGears(RigidFlanks(model.pair, model.charts), (pinion, wheel), modulus, model.load.on)
+        materials = model.bodies[0].material, model.bodies[1].material
+        return LineGears(RigidFlanks(model.pair, model.charts), (pinion, wheel), materials, model.load.on)
 
     @property
     def pair(self) -> GearPair:
@@ -161,13 +162,15 @@ class LineGears:
 
     @property
     def layers(self) -> Floats | None:
-        """Ends (l + 1,) of the narrower gear's layers [mm], ascending, of which parts shorter than half of a layer are
-        taken together with the next one; None in the plane."""
+        """Ends (l + 1,) of thirds of the narrower gear's layers [mm], ascending; parts of a layer shorter than half of
+        it are taken together with the next one. None in the plane."""
         if self.spacing is None:
             return None
         heights = min((gear.heights[::2] for gear in self.gears), key=np.ptp)
         half, shortest = 0.5 * self.pair.face_width, LEAST_SHARE * float(np.diff(heights).max())
-        return np.array([-half, *heights[np.abs(heights) < half - shortest], half])
+        ends = np.array([-half, *heights[np.abs(heights) < half - shortest], half])
+        parts = ends[:-1, None] + np.diff(ends)[:, None] * np.arange(PER_LAYER) / PER_LAYER
+        return np.append(parts.ravel(), half)
 
     @property
     def half_width(self) -> float:
@@ -184,7 +187,9 @@ class LineGears:
         B = line_compliance(self.pair, self.gears, stations, shift, width)
         L, mean = stations.lengths, stations.mean
         H = L * math.cos(self.pair.pinion.base_helix_angle)
-        system = LineSystem(B, L, mean(gap.gap), mean(gap.radius), mean(np.log(width)), H, self.modulus)
+        ends = None if self.spacing is None else FaceEnds.of(self.pair, self.materials, stations)
+        modulus = contact_modulus(*self.materials)
+        system = LineSystem(B, L, mean(gap.gap), mean(gap.radius), mean(np.log(width)), H, modulus, ends)
         friction = self._friction(stations, shift, width)
         return LinePosition(stations, profile, gap, system, shift, width, self._to_tip(stations, gap.shift), friction)
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from evolvent.contact.hertz import line_half_width
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.fem.material import contact_modulus
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
@@ -112,7 +111,7 @@ class LineStarts:
         estimate = HertzEstimate.of(model.pair, materials, torque)
         widest = float(np.max(estimate.half_width(np.linspace(*model.pair.path_of_contact, 20))))
         return LineGears(
-            RigidFlanks(model.pair, model.charts), self._compliances, contact_modulus(*materials), model.load.on,
+            RigidFlanks(model.pair, model.charts), self._compliances, materials, model.load.on,
             WIDER * widest,
         )
 

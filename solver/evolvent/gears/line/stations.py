@@ -22,6 +22,11 @@ BEYOND = 0.5
 contact."""
 SHORTEST = 0.4
 """Length of the first and the last hat of a line over that of the others, below which two become one."""
+NEAR_END = 0.15, 0.4
+"""Distances of further stations from the ends of the face, over the spacing of the others: within twice the half-width
+of the contact the load falls there."""
+APART = 0.1
+"""Least distance of such a station from another one, over the spacing."""
 GAUSS = np.array([-1.0, 1.0]) / math.sqrt(3.0)
 """Points of the rule between two stations, of equal weights: exact for a hat times a quadratic function."""
 
@@ -100,7 +105,7 @@ def _lines(pair: GearPair, angle: float, spacing: float) -> Iterator[_Line]:
         if slope > 0.0:
             low, *ends, high = np.clip(np.sort(pair.pinion.hand * limits / slope), -half, half)
             fixed = np.unique([low, *ends, high])
-        z = _on_line(even, fixed)
+        z = _with_ends(_on_line(even, fixed), half, even[1] - even[0])
         if len(z) > 1:
             yield _Line(tooth, z, *_hats(z, math.cos(pair.pinion.base_helix_angle)))
 
@@ -117,6 +122,14 @@ def _on_line(even: Floats, fixed: Floats) -> Floats:
     far = np.abs(between[:, None] - fixed).min(axis=1, initial=np.inf) > near
     kept = fixed[np.append(True, np.diff(fixed) > 1e-6)]
     return np.sort(np.concatenate([kept, between[far]]))
+
+
+def _with_ends(z: Floats, half: float, spacing: float) -> Floats:
+    """Heights of the stations of a line with further ones near the ends of the face, where the line goes there. half:
+    half the face width [mm]."""
+    near = np.outer([-1.0, 1.0], half - spacing * np.array(NEAR_END)).ravel()
+    within = near[(near > z[0]) & (near < z[-1])]
+    return np.sort(np.append(z, within[np.abs(within[:, None] - z).min(axis=1, initial=np.inf) > APART * spacing]))
 
 
 def _hats(z: Floats, cosine: float) -> tuple[Floats, sp.csr_matrix]:

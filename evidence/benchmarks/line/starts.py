@@ -1,4 +1,4 @@
-"""`python -m evidence.benchmarks.accuracy.line_starts [--small]`: Newton iterations and searches of the resolved
+"""`python -m evidence.benchmarks.line.starts [--small]`: Newton iterations and searches of the resolved
 contact without friction, from the nominal contact lines, from the position before and from line contact, for
 docs/line_contact.md."""
 
@@ -13,7 +13,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from evidence.benchmarks.accuracy.line_pairs import Case, case, relieved
+from evidence.benchmarks.line.pairs import Case, case, relieved
 from evidence.checkout import DOCS
 from evidence.scenes import HELICAL, SPUR
 from evidence.tables import Column, Table, write_rows

@@ -1,4 +1,4 @@
-"""`python -m evidence.benchmarks.accuracy.line_contact [--small]`: line contact beside the resolved contact, without
+"""`python -m evidence.benchmarks.line.accuracy [--small]`: line contact beside the resolved contact, without
 friction, for docs/line_contact.md. Pairs with relief, misaligned ones, random ones; from light loads to the whole one.
 """
 
@@ -6,28 +6,26 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from evidence.benchmarks.accuracy.line_pairs import ALL, Case, random_cases
+from evidence.benchmarks.line.pairs import ALL, Case, random_cases
+from evidence.benchmarks.line.resolved import ResolvedLoad, ResolvedPitch, resolved_pitch
 from evidence.checkout import DOCS
 from evidence.tables import Column, Table, write_rows
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh, loaded_mesh, searched_positions, under_torques
-from evolvent.dynamics.results.curves import LOADED, CoarseExcitation, pitch_curves
-from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh, loaded_mesh
+from evolvent.dynamics.results.curves import LOADED, CoarseExcitation, PitchCurve, pitch_curves
+from evolvent.dynamics.results.line_facts import line_facts
+from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.line.line_gears import LineGears
 from evolvent.gears.line.line_result import LineResult
 from evolvent.gears.meshing.companion_meshes import companion_mesh
-from evolvent.gears.pressure.contact_slices import Slices, slices
 from evolvent.gears.pressure.line_peaks import pooled_peaks
-from evolvent.gears.pressure.pitch_pressure import facets_of
 from evolvent.gears.problem.gear_problem import MeshSettings
-from evolvent.gears.sweep.pitch_sweep import uniform_pitch
-from evolvent.gears.sweep.position_result import PositionResult, position_result
 from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent_meshes.arrays import Floats
 
@@ -63,14 +61,26 @@ class LineRow:
     stiffness_percent: float
     """Largest deviation of a position's tangent stiffness."""
     pressure_percent: float
-    """Deviation of the peak pressure of layers that bears on no edge, nine in ten."""
+    """Deviation of Hertz' peak pressure of the line contact from the one fitted to the resolved pressure, in layers
+    that bear on no edge, nine in ten."""
+    pressure_by_load_percent: float
+    """Part of it by the load of the layer: nine in ten of the deviations of Hertz' peak pressure from that for the
+    resolved load."""
     on_edges_percent: float
     """Largest part of the load that edges of tips bear in line contact."""
     inside: int
     """Positions whose error bar holds the deviation of the transmission error."""
+    peak_to_peak_inside: int
+    """1 where the error bar of the peak-to-peak transmission error holds its deviation, else 0."""
+    face_load_inside: int
+    """1 where the error bar of K_Hβ holds its deviation, else 0; 1 in the plane."""
     resolved_seconds: float
     """Processor time of condensing and positions, all torques of the pair."""
     line_seconds: float
+
+
+def _yes(inside: int) -> str:
+    return "yes" if inside else "no"
 
 
 TABLE = Table(LineRow, (
@@ -81,45 +91,39 @@ TABLE = Table(LineRow, (
     Column("line load, rms [%]", "line_load_percent", ".2f"), Column("at ends [%]", "line_load_end_percent", ".1f"),
     Column("K_Hβ", "face_load_factor", ".3f"), Column("off by [%]", "face_load_percent", ".2f"),
     Column("stiffness [%]", "stiffness_percent", ".2f"), Column("p_0, nine in ten [%]", "pressure_percent", ".1f"),
+    Column("by the load [%]", "pressure_by_load_percent", ".1f"),
     Column("load on edges [%]", "on_edges_percent", ".2f"),
-    Column("bars hold", lambda row: f"{row.inside} of {row.positions}", words=True),
+    Column("bars of positions hold", lambda row: f"{row.inside} of {row.positions}", words=True),
+    Column("of peak to peak, K_Hβ", lambda row: f"{_yes(row.peak_to_peak_inside)}, {_yes(row.face_load_inside)}",
+           words=True),
 ))
 
 
 def case_rows(case: Case) -> Iterator[LineRow]:
     """A row a torque."""
-    problem = case.problem
-    angles = np.array(uniform_pitch(problem.pair.pinion.z, case.positions).angles)
-    torques = [problem.torque * percent / 100.0 for percent in case.percents]
-    begin = time.process_time()
-    model = prepare_model(replace(problem, torque=torques[-1], mesh_torques=(torques[0], torques[-1]))).model
-    resolved = list(zip(*_resolved(model, torques, angles)))
-    after = time.process_time()
-    on_lines = replace(problem, mesh=MeshSettings("line"))
+    yield from rows_beside(case, resolved_pitch(case))
+
+
+def rows_beside(case: Case, resolved: ResolvedPitch) -> Iterator[LineRow]:
+    """Rows of a case whose contact was resolved."""
+    problem, angles, torques = case.problem, resolved.angles, resolved.torques
+    on_lines, begin = replace(problem, mesh=MeshSettings("line")), time.process_time()
     lines = prepare_model(on_lines).model
     mesh = loaded_mesh(lines, torques, angles)
-    seconds = after - begin, time.process_time() - after
+    seconds = time.process_time() - begin
     coarse = loaded_mesh(prepare_model(on_lines, mesh=companion_mesh).model, torques, angles)
     unloaded = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
     excitation = MeshExcitation(unloaded, mesh)
     companion = CoarseExcitation(MeshExcitation(unloaded, coarse))
-    bars = [curves[LOADED].bars for curves in pitch_curves(excitation, companion)]
+    facts, curves = line_facts(excitation, companion), list(pitch_curves(excitation, companion))
     gears = LineGears.of(lines)
     positions = [gears.position(float(angle)) for angle in angles]
     for j, torque in enumerate(torques):
         force = torque / lines.base_radius / lines.width_factor
         found = [LineResult.of(position, force) for position in positions]
-        both = _Both(case, model, list(resolved[j]), found, mesh, j)
-        yield both.row(torque, unloaded, bars[j], seconds)
-
-
-def _resolved(model: GearModel, torques: Sequence[float], angles: Floats) -> Iterator[list[PositionResult]]:
-    """Positions one after the other, each under all torques."""
-    models = under_torques(model, torques)
-    for row in searched_positions(models, angles):
-        yield [
-            position_result(own, each.contact, each.smooth, 0.0, each.stiffness, 0) for own, each in zip(models, row)
-        ]
+        bar = float(facts.face_load_factor_error[j])
+        both = _Both(case, resolved.under[j], found, mesh, curves[j], (float(facts.face_load_factor[j]), bar), j)
+        yield both.row(torque, unloaded, (resolved.seconds, seconds))
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,50 +131,51 @@ class _Both:
     """A pair under a torque, resolved and in line contact."""
 
     case: Case
-    model: GearModel
-    resolved: list[PositionResult]
+    resolved: ResolvedLoad
     lines: list[LineResult]
     mesh: LoadedMesh
+    curves: Mapping[str, PitchCurve]
+    """Quantities of the line contact with their error bars."""
+    printed: tuple[float, float]
+    """K_Hβ of the line contact as printed, and its error; nan in the plane."""
     number: int
     """Index of the torque."""
 
-    def row(self, torque: float, unloaded: Floats, bars: Floats, seconds: tuple[float, float]) -> LineRow:
-        error = np.array([result.transmission_error for result in self.resolved])
-        off = self.mesh.errors[:, self.number] - error
-        deflection = float(np.mean(error - unloaded))
-        stiffness = np.array([result.stiffness for result in self.resolved]) * self.model.width_factor
-        materials = self.model.bodies[0].material, self.model.bodies[1].material
-        cuts = [slices(result, facets_of(self.model), materials) for result in self.resolved]
-        loads, ends, pressures = self._slices(cuts)
-        factors = self._face_load(cuts)
+    def row(self, torque: float, unloaded: Floats, seconds: tuple[float, float]) -> LineRow:
+        error, line = self.resolved.error, self.mesh.errors[:, self.number]
+        off, deflection = line - error, float(np.mean(error - unloaded))
+        stiffness = self.resolved.stiffness
+        loads, ends, (pressures, by_load) = self._slices()
+        factors = self._face_load()
+        peak_off = float(np.ptp(line) - np.ptp(error))
         assert self.mesh.line is not None
         return LineRow(
             self.case.name, self.case.problem.mesh.level, 1e-3 * torque, len(error), 1e3 * deflection,
-            100.0 * float(np.abs(off).max()) / deflection, 1e3 * float(np.ptp(error)),
-            1e3 * float(np.ptp(error + off) - np.ptp(error)), 100.0 * self._tooth_forces(),
-            100.0 * loads, 100.0 * ends, factors[0], 100.0 * (factors[1] / factors[0] - 1.0),
+            100.0 * float(np.abs(off).max()) / deflection, 1e3 * float(np.ptp(error)), 1e3 * peak_off,
+            100.0 * self._tooth_forces(), 100.0 * loads, 100.0 * ends, factors[0],
+            100.0 * (factors[1] / factors[0] - 1.0),
             100.0 * float(np.abs(self.mesh.stiffness[:, self.number] / stiffness - 1.0).max()), 100.0 * pressures,
-            100.0 * float(self.mesh.line.on_edges[:, self.number].max()),
-            int((1e3 * np.abs(off) <= bars).sum()), *seconds,
+            100.0 * by_load, 100.0 * float(self.mesh.line.on_edges[:, self.number].max()),
+            int((1e3 * np.abs(off) <= self.curves[LOADED].bars).sum()),
+            int(1e3 * abs(peak_off) <= self.curves[LOADED].varying_error(lambda values: float(np.ptp(values)))),
+            int(np.isnan(self.printed[0]) or abs(self.printed[0] - factors[0]) <= self.printed[1]), *seconds,
         )
 
     def _tooth_forces(self) -> float:
         """Largest deviation of a tooth pair's force, over the load."""
         worst = 0.0
-        for result, line in zip(self.resolved, self.lines):
-            c = result.contact
-            whole = float((c.weights * c.pressure).sum())
-            for tooth in {*c.tooth.tolist(), *line.teeth}:
+        for forces, line in zip(self.resolved.forces, self.lines):
+            for tooth in {*forces, *line.teeth}:
                 own = line.force(tooth) if tooth in line.teeth else 0.0
-                worst = max(worst, abs(own - c.normal_force(tooth)) / whole)
+                worst = max(worst, abs(own - forces.get(tooth, 0.0)) / sum(forces.values()))
         return worst
 
-    def _slices(self, cuts: Sequence[Slices]) -> tuple[float, float, float]:
+    def _slices(self) -> tuple[float, float, tuple[float, float]]:
         """Root mean square of the deviations of line loads, over the largest one: of all slices, and of those at the
-        ends of the face; and nine in ten of the deviations of peak pressures."""
+        ends of the face; and nine in ten of the deviations of peak pressures, whole and by the load alone."""
         off, at_end, peaks, largest = [], [], [], 0.0
         half = 0.5 * self.case.problem.pair.face_width
-        for cut, line in zip(cuts, self.lines):
+        for cut, line in zip(self.resolved.cuts, self.lines):
             largest = max(largest, float(cut.line_load.max()))
             fitted = pooled_peaks(cut)
             for tooth in np.unique(cut.tooth):
@@ -179,12 +184,16 @@ class _Both:
                 off.append(load - cut.line_load[own])
                 at_end.append(np.abs(cut.z[own]) > NEAR_END * half)
                 known = np.isfinite(fitted[own]) & (load > 0.1 * largest)
-                radius = self._radius(line, int(tooth), cut.z[own])
-                p0 = np.sqrt(load * line.position.system.modulus / (np.pi * radius))
-                peaks.append(np.abs(p0 / fitted[own] - 1.0)[known])
-        every, ends, pressures = np.concatenate(off), np.concatenate(at_end), np.concatenate(peaks)
+                radius = self._radius(line, int(tooth), cut.z[own])[known]
+                p0 = np.sqrt(load[known] * line.position.system.modulus / (np.pi * radius))
+                by_load = np.sqrt(load[known] / cut.line_load[own][known])
+                peaks.append(np.abs(np.stack([p0 / fitted[own][known], by_load]) - 1.0))
+        every, ends, pressures = np.concatenate(off), np.concatenate(at_end), np.concatenate(peaks, axis=1)
         rms = [float(np.sqrt(np.mean(part**2))) / largest if len(part) else np.nan for part in (every, every[ends])]
-        return rms[0], rms[1], float(np.quantile(pressures, 0.9)) if len(pressures) else np.nan
+        if not pressures.size:
+            return rms[0], rms[1], (np.nan, np.nan)
+        whole, by_load = (float(each) for each in np.quantile(pressures, 0.9, axis=1))
+        return rms[0], rms[1], (whole, by_load)
 
     def _mean_load(self, line: LineResult, tooth: int, z: Floats, width: Floats) -> Floats:
         """Mean load per length (k,) of a tooth pair in slices of some extent along z."""
@@ -202,8 +211,9 @@ class _Both:
             return np.full_like(z, np.nan)
         return np.interp(z, line.position.stations.z[own], line.position.system.radius[own])
 
-    def _face_load(self, cuts: Sequence[Slices]) -> tuple[float, float]:
+    def _face_load(self) -> tuple[float, float]:
         """K_Hβ of both, on the layers of the resolved mesh, in the mean over the positions."""
+        cuts, face = self.resolved.cuts, self.case.problem.pair.face_width
         if self.case.problem.is_plane:
             return 1.0, 1.0
         z, first = np.unique(np.round(np.concatenate([cut.z for cut in cuts]), 6), return_index=True)
@@ -212,7 +222,7 @@ class _Both:
         for cut, line in zip(cuts, self.lines):
             np.add.at(resolved, np.searchsorted(z, np.round(cut.z, 6)), cut.line_load)
             lines += sum(self._mean_load(line, tooth, z, width) for tooth in line.teeth)
-        first_factor, second = (float(each.max() * width.sum() / (each @ width)) for each in (resolved, lines))
+        first_factor, second = (float(each.max() * face / (each @ width)) for each in (resolved, lines))
         return first_factor, second
 
 

@@ -1,4 +1,4 @@
-"""`python -m evidence.benchmarks.accuracy.line_edges [--small]`: positions at which edges of tips bear, resolved and as
+"""`python -m evidence.benchmarks.line.edges [--small]`: positions at which edges of tips bear, resolved and as
 line contact says, of random spur pairs without relief; for docs/line_contact.md.
 """
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evidence.benchmarks.accuracy.line_pairs import unrelieved_spur
+from evidence.benchmarks.line.pairs import unrelieved_spur
 from evidence.checkout import DOCS
 from evidence.tables import Table, write_rows
 from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh, searched_positions
@@ -81,7 +81,7 @@ def said(docs: Path) -> str:
     )
     worst = max(row.largest_silent_percent for row in measured)
     return (
-        f"{len(measured)} random spur pairs without relief (`python -m evidence.benchmarks.accuracy.line_edges`): "
+        f"{len(measured)} random spur pairs without relief (`python -m evidence.benchmarks.line.edges`): "
         f"edges bear more than {100 * MOST_ON_EDGES:g} % of the load at {bearing} of {count} positions where the "
         f"contact is resolved, line contact flags {flagged}; {silent} that bear are not flagged"
         f"{f', with up to {worst:.2g} % of the load' if silent else ''}."

@@ -1,4 +1,4 @@
-"""`python -m evidence.benchmarks.accuracy.line_friction [--small]`: line contact with friction beside the resolved
+"""`python -m evidence.benchmarks.line.friction [--small]`: line contact with friction beside the resolved
 contact, at μ = 0 and 0.1 over the same periodic pitch, for docs/line_contact.md.
 """
 
@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from evidence.benchmarks.accuracy.line_pairs import ALL
+from evidence.benchmarks.line.pairs import ALL
 from evidence.checkout import DOCS
 from evidence.tables import Column, Table, write_rows
 from evolvent.gears.gear_model import prepare_model

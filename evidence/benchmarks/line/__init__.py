@@ -1,0 +1,1 @@
+"""Line contact beside the resolved contact."""

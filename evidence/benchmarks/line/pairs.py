@@ -119,28 +119,31 @@ torque_Nm = {round(1e-3 * load * width * radius, 2)}
     return gear_problem(scene_from_text(text, [*PLAIN, *(() if space else FINE)]))
 
 
-def unrelieved_spur(seed: int) -> GearProblem:
-    """A random spur pair in the plane without relief, resolved at level standard. Raises SceneError where the gears are
-    impossible."""
-    rng = np.random.default_rng((seed, 7))
+def unrelieved(seed: int, helical: bool = False) -> GearProblem:
+    """A random pair without relief: spur in the plane, resolved at level standard, or helical, resolved at level quick.
+    Raises SceneError where the gears are impossible."""
+    rng = np.random.default_rng((seed, 8 if helical else 7))
     module = round(float(rng.uniform(1.0, 6.0)), 2)
-    teeth, width = int(rng.integers(17, 40)), round(8.0 * module, 2)
+    teeth, width = int(rng.integers(17, 40)), round((4.0 if helical else 8.0) * module, 2)
     wheel = round(teeth * float(rng.uniform(1.0, 3.5)))
     load = float(np.exp(rng.uniform(np.log(5.0), np.log(150.0)))) * module
+    helix = round(float(rng.uniform(8.0, 25.0)), 1) if helical else 0.0
+    diameter = module / np.cos(np.radians(helix))
     text = f"""
 [pair]
 normal_module_mm = {module}
 normal_pressure_angle_deg = {rng.choice([17.5, 20.0, 25.0])}
+helix_angle_deg = {helix}
 [pinion]
 teeth = {teeth}
 face_width_mm = {width}
 profile_shift = {round(float(rng.uniform(-0.1, 0.5)), 3)}
-bore_diameter_mm = {round(0.45 * module * teeth, 2)}
+bore_diameter_mm = {round(0.45 * diameter * teeth, 2)}
 [wheel]
 teeth = {wheel}
 face_width_mm = {width}
-bore_diameter_mm = {round(0.45 * module * wheel, 2)}
+bore_diameter_mm = {round(0.45 * diameter * wheel, 2)}
 [load]
-torque_Nm = {round(0.5e-3 * load * width * module * teeth, 3)}
+torque_Nm = {round(0.5e-3 * load * width * diameter * teeth, 3)}
 """
-    return gear_problem(scene_from_text(text, PLAIN))
+    return gear_problem(scene_from_text(text, [*PLAIN, *(('mesh.level="quick"',) if helical else ())]))

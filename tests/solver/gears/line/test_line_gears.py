@@ -111,6 +111,25 @@ def _vectors(body, own, nodal: Floats, tooth: int):  # type: ignore[no-untyped-d
     return vectors, np.column_stack([np.full(len(points), tooth), node])
 
 
+def test_load_falls_towards_the_end_of_the_face() -> None:
+    """Problem: a helical pair whose line reaches both ends of the face. Right: within half a contact width of an end the
+    load per length is a tenth lower than without what `FaceEnds` adds, or more; the middle bears it; the torque is the
+    same."""
+    gears, half = LineGears.of(helical_model()), 0.5 * helical_model().pair.face_width
+    position = gears.position(0.05)
+    force = 60e3 / gears.base_radius
+    found = LineResult.of(position, force)
+    without = LineResult.of(replace(position, system=replace(position.system, ends=None)), force)
+    b = position.half_width(found.equilibrium.load).max()
+    tooth = max(found.teeth, key=found.force)
+    for side in (-half, half - b):
+        ends = np.array([side, side + b])
+        assert np.diff(found.force_below(tooth, ends)) < 0.9 * np.diff(without.force_below(tooth, ends))
+    middle = np.array([-0.2 * half, 0.2 * half])
+    assert np.diff(found.force_below(tooth, middle)) > np.diff(without.force_below(tooth, middle))
+    assert found.forces == pytest.approx(without.forces, rel=1e-9)
+
+
 def test_compliance_is_symmetric_and_positive() -> None:
     """Exact: B is symmetric, and positive definite on loads that the mesh tells apart."""
     B = LineGears.of(helical_model()).position(0.1).system.B

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from evolvent.results.run_data import RunData, SolvedPosition
+from evolvent_meshes.arrays import Floats
 
 
 def transmission_error_um(_: RunData, solved: SolvedPosition) -> float:
@@ -13,6 +17,12 @@ def transmission_error_um(_: RunData, solved: SolvedPosition) -> float:
 def loss_percent(_: RunData, solved: SolvedPosition) -> float:
     """Friction power over input power [%]."""
     return 100.0 * solved.result.friction_loss / solved.result.torques[0]
+
+
+def pitch_loss_percent(lost: ArrayLike, given: ArrayLike) -> Floats:
+    """Friction work over the input work of a pitch [%], from friction powers (n, ...) and pinion torques (n, ...)
+    at its n positions, both in N·mm as of `PositionResult`."""
+    return np.asarray(100.0 * np.sum(lost, axis=0) / np.sum(given, axis=0))
 
 
 def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:

@@ -9,7 +9,12 @@ from evolvent.gears.line.line_result import FACE_LOAD_OFF, PRESSURE_OFF
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.engagement import engagement
 from evolvent.results.face_load import face_load
-from evolvent.results.position_figures import mesh_stiffness, secant_stiffness, transmission_error_um
+from evolvent.results.position_figures import (
+    mesh_stiffness,
+    pitch_loss_percent,
+    secant_stiffness,
+    transmission_error_um,
+)
 from evolvent.results.run_data import RunData
 
 ERROR_VARIES, ERROR_LEAST = 6e-3, 1e-3
@@ -31,7 +36,7 @@ def line_parts(run: RunData, index: int) -> FigureErrors:
     deflection = float(np.nanmean(errors - 1e3 * np.array([each.unloaded_error for each in solved])))
     tangent, secant = (float(np.mean([of(run, each) for each in solved])) for of in (mesh_stiffness, secant_stiffness))
     results = [each.result for each in solved]
-    loss = sum(result.friction_loss for result in results) / sum(result.torques[0] for result in results)
+    loss = pitch_loss_percent([each.friction_loss for each in results], [each.torques[0] for each in results])
     rubbing = results[0].friction if run.pair.pinion.base_helix_angle else 0.0
     curve = engagement(run, index)
     return FigureErrors(
@@ -41,6 +46,6 @@ def line_parts(run: RunData, index: int) -> FigureErrors:
         + RUBBING_VARIES * rubbing * deflection,
         mesh_stiffness_N_per_mm_um=TANGENT_OFF * tangent,
         secant_stiffness_N_per_mm_um=(SECANT_OFF + RUBBING_OFF * rubbing) * secant,
-        loss_percent=100.0 * LOSS_OFF * loss,
+        loss_percent=LOSS_OFF * float(loss),
         face_load_factor=0.0 if run.plane else FACE_LOAD_OFF * face_load(run, index).factor(),
     )

@@ -13,7 +13,13 @@ from evolvent.results.engagement import Engagement, crossing, engagements
 from evolvent.results.error_bars.position_spacing import spacing_errors
 from evolvent.results.face_load import face_load
 from evolvent.results.mesh_facts import few_cells_across
-from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
+from evolvent.results.position_figures import (
+    loss_percent,
+    mesh_stiffness,
+    pitch_loss_percent,
+    secant_stiffness,
+    transmission_error_um,
+)
 from evolvent.results.relief_kinks import largest_kink
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.shaft_forces import shaft_forces
@@ -82,7 +88,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
     errors = 1e3 * np.array([result.transmission_error for result in results])
     top, kink = curve.peak, largest_kink(run, index)
     crosses = curve is not lowest and not few_cells_across(run)  # on few cells scatter causes crossings
-    loss = sum(r.friction_loss for r in results) / sum(r.torques[0] for r in results)
+    loss = pitch_loss_percent([r.friction_loss for r in results], [r.torques[0] for r in results])
     return FrictionRow(
         friction=curve.friction,
         max_pressure_MPa=top.pressure,
@@ -94,7 +100,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
         mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),
         secant_stiffness_N_per_mm_um=float(np.mean([secant_stiffness(run, each[index]) for each in run.positions])),
-        loss_percent=100.0 * loss,
+        loss_percent=float(loss),
         face_load_factor=face_load(run, index).factor(),
         crossing_deg=degrees(crossing(lowest, curve)) if crosses else math.nan,
         balance_error=pitch_imbalance(results),

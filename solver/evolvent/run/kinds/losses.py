@@ -13,24 +13,19 @@ import numpy as np
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.gears.problem.loss_factor import ohlendorf_loss_factor
 from evolvent.gears.shared_gears import SharedGears
-from evolvent.gears.solution.certified_pitch import ON_DEFLECTED
 from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.results.run_data import RunData
-from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.results.tables.run_warnings import RELIEVE, about_spacing, tip_edge_contact
-from evolvent.results.tables.summary_rows import FrictionRow
 from evolvent.results.tables.table import SCENE_TITLE, Table
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.kept_pitch import require_resumable
-from evolvent.run.solved_pitches import SolvedPitches, companion_of, solved_pitches
+from evolvent.run.loss_figures import PitchFigures, loss_warnings, pitch_figures
+from evolvent.run.solved_pitches import SolvedPitches, solved_pitches
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.part_torque import listed_percents, under_percents, with_percents
 from evolvent.scene.scene import Scene, SceneError
 from evolvent.scene.schema.errors import InputProblem
-from evolvent.scene.skips import skips
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -138,14 +133,10 @@ class Losses(Computation[list[SolvedPitches]]):
 
     def results(self, call: Call, solved: list[SolvedPitches]) -> Results:
         """The table of all torques."""
-        mended = any(load.fine.solved.deflected for load in solved) and skips(self.scene, "deflected-flanks")
-        reasons = dict.fromkeys(load.coarse.reason for load in solved if load.coarse.reason)
-        runs = (load.run_data(companion_of(load.coarse)) for load in solved)
-        figures = [(run, friction_rows(run)) for run in runs]
-        rows = [row for each in figures for row in _rows(*each)]
-        said = [*[ON_DEFLECTED] * mended, *reasons, *_about(figures)]
+        figures = pitch_figures(solved)
+        rows = [row for each in figures for row in _rows(each)]
         timings = sum((load.timings for load in solved), Timings())
-        return Results(self.scene, [LOSSES.of(rows)], said, timings=timings)
+        return Results(self.scene, [LOSSES.of(rows)], [*loss_warnings(self.scene, solved, figures)], timings=timings)
 
     def _check_parts(self, call: Call, parts: Mapping[str, Scene]) -> None:
         """Raises ArchiveError, before anything is removed, where stored positions belong to another scene. On rank 0
@@ -154,11 +145,12 @@ class Losses(Computation[list[SolvedPitches]]):
             require_resumable(scene, call.folder.out, self.command, part, self.scene)
 
 
-def _rows(run: RunData, figures: Sequence[FrictionRow]) -> Iterator[LossRow]:
-    """Losses at each friction coefficient under one torque. figures: of the run."""
+def _rows(figures: PitchFigures) -> Iterator[LossRow]:
+    """Losses at each friction coefficient under one torque."""
+    run = figures.run
     load, beside = run.scene.load, ohlendorf_loss_factor(run.pair)
     passed = 1e-3 * run.scene.hertz_estimate().pinion_torque * MeshSpeed(SPEED, run.pair.pinion.z).rad_s
-    for index, row in enumerate(figures):
+    for index, row in enumerate(figures.rows):
         loss, bar = 0.01 * row.loss_percent, 0.01 * run.errors.bar("loss_percent", index)
         delivered = 1.0 - loss if load.on == "wheel" else 1.0  # part of the input that the torque is held for
         factor, factor_bar = (each / row.friction if row.friction else math.nan for each in (loss, bar))
@@ -168,18 +160,6 @@ def _rows(run: RunData, figures: Sequence[FrictionRow]) -> Iterator[LossRow]:
             loss_at_1000_rpm_W=passed * loss / delivered, loss_at_1000_rpm_W_error=passed * bar / delivered**2,
             tooth_loss_factor=factor, tooth_loss_factor_error=factor_bar, ohlendorf_loss_factor=beside,
         )
-
-
-def _about(figures: Sequence[tuple[RunData, Sequence[FrictionRow]]]) -> Iterator[str]:
-    """Warnings on edges that bear and on the spacing of positions, for the heaviest torque that has them. figures: run
-    under each torque with its own, the lightest first."""
-    edges, spaced = "", ""
-    for run, rows in figures:
-        under = f"under {run.scene.load.torque_Nm:.4g} N·m"
-        if found := tip_edge_contact(run):
-            edges = f"{found}, {under}: the friction of edges, where pressures are singular, is in the loss; {RELIEVE}."
-        spaced = next((f"{under}: {each}" for each in about_spacing(run, rows, ["loss_percent"])), spaced)
-    yield from filter(None, (edges, spaced))
 
 
 def losses_figure(title: str, rows: Sequence[LossRow]) -> Figure:

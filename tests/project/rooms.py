@@ -175,7 +175,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.design": (
         "meshes", "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact.newton", "gears",
-        "gears.line", "gears.sweep", "scene", "scene.schema", "results.archive", "results.tables", "results.drawing",
+        "gears.line", "gears.solution", "gears.sweep", "scene", "scene.schema", "results", "results.archive",
+        "results.tables", "results.drawing",
         "dynamics.excitation", "dynamics.results", "run", "run.dynamics",
     ),
     "run.kinds": (

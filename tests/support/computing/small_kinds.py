@@ -23,6 +23,7 @@ MORE: Mapping[str, tuple[str, ...]] = {
     "wear": ("wear.cycles=1e5", "wear.pinion_mm2_per_N=1e-12", "wear.wheel_mm2_per_N=1e-12"),
     "design": (
         'design.vary=[["both.tip_relief_um",4.0,24.0,10.0]]', 'design.tolerances=[["pinion.tip_relief_um",2.0]]',
+        'design.limits=[["loss_percent",5.0]]',
     ),
     "dynamics": ("dynamics.speeds=3", "dynamics.torque_percents=[50,100]", "dynamics.backlash_um=50"),
     "transient": ("transient.speeds_rpm=[1000,2000]", "transient.mesh_periods=3"),

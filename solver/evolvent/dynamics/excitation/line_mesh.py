@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.gears.line.line_gears import LineGears
+from evolvent.gears.line.line_gears import LineGears, LinePosition
 from evolvent.gears.line.line_result import FACE_LOAD_OFF, PRESSURE_OFF, LineResult
 from evolvent_meshes.arrays import Floats
 
@@ -67,15 +67,19 @@ def line_figures(gears: LineGears, torques: Sequence[float], angles: Floats) -> 
     The loads act along the normals of the helicoids, so that the torques of both gears have the ratio of the base radii
     exactly, and no position stores power. Raises NotConverged, TooWide.
     """
+    for angle in angles:
+        yield figures_at(gears, gears.position(float(angle)), torques)
+
+
+def figures_at(gears: LineGears, position: LinePosition, torques: Sequence[float]) -> Floats:
+    """Figures (m, 6 + l) of a position of these gears, see `line_figures`. Raises NotConverged, TooWide."""
     radius, width, layers = gears.base_radius, gears.width_factor, gears.layers
     ratio = gears.pair.pinion.base_radius / radius
-    for angle in angles:
-        position = gears.position(float(angle))
-        rows = []
-        for torque in torques:
-            found = LineResult.of(position, torque / radius / width)
-            load, given = found.equilibrium.load, torque / width * ratio
-            mesh = found.transmission_error, found.equilibrium.stiffness * width, given, 0.0
-            more = found.position.on_edges(load), found.largest_pressure(gears.pair)
-            rows.append([*mesh, *more, *found.layer_load(layers)])
-        yield np.array(rows)
+    rows = []
+    for torque in torques:
+        found = LineResult.of(position, torque / radius / width)
+        load, given = found.equilibrium.load, torque / width * ratio
+        mesh = found.transmission_error, found.equilibrium.stiffness * width, given, 0.0
+        more = found.position.on_edges(load), found.largest_pressure(gears.pair)
+        rows.append([*mesh, *more, *found.layer_load(layers)])
+    return np.array(rows)

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evolvent.dynamics.results.curves import LOADED, TANGENT, pitch_curves
-from evolvent.dynamics.results.line_facts import line_facts
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.tables.table import Table
 from evolvent.run.design.evaluation import Variants
-from evolvent.run.design.variant_mesh import FACE_LOAD, ON_EDGES, PEAK_TO_PEAK, PRESSURE
-from evolvent.run.dynamics.excitation import SolvedExcitation
+from evolvent.run.design.ranking import COLUMN
+from evolvent.run.design.solved_variant import NOT_SOLVED, SolvedVariant
+from evolvent.run.design.variant_mesh import ON_EDGES
 from evolvent.scene.schema.design import FIGURES, DesignSection, Figure
 from evolvent_meshes.arrays import Floats
 
@@ -47,6 +46,11 @@ class BestRow:
     """Largest of Hertz' p_0, away from edges of tips and from starts of linear reliefs."""
     largest_pressure_MPa_error: float
     """Estimated error of it."""
+    loss_percent: float
+    """Friction loss over the input of the pitch in line contact, as of `evolvent losses`; NaN where it is neither a
+    target nor has a limit, and where edges of tips bear under this torque."""
+    loss_percent_error: float
+    """Estimated error of it."""
     resolved_peak_to_peak_um: float
     """Peak-to-peak transmission error with the contact resolved; NaN where it was not asked for."""
     resolved_peak_to_peak_um_error: float
@@ -55,20 +59,28 @@ class BestRow:
     """Mean tangent stiffness of the mesh with the contact resolved."""
     resolved_stiffness_mean_N_per_um_error: float
     """Estimated error of it."""
+    resolved_loss_percent: float
+    """Friction loss with the contact resolved; NaN where it was not asked for."""
+    resolved_loss_percent_error: float
+    """Estimated error of it."""
     band_left_out: int
-    """Number of variants within the tolerances of the best one of which edges of tips bear, or that cannot be computed:
-    the band is without them."""
+    """Number of variants within its tolerances of which edges of tips bear, or that cannot be computed: the band is
+    without them."""
     band_lowest_peak_to_peak_um: float
-    """Least peak-to-peak transmission error of variants within the tolerances of the best one; NaN of others."""
+    """Least peak-to-peak transmission error of variants within its tolerances; NaN of the scene as it stands."""
     band_highest_peak_to_peak_um: float
     """Largest one of them."""
     band_lowest_face_load_factor: float
-    """Least K_Hβ of variants within the tolerances of the best one."""
+    """Least K_Hβ of variants within its tolerances."""
     band_highest_face_load_factor: float
     """Largest one of them."""
     band_lowest_pressure_MPa: float
     """Least p_0 of them."""
     band_highest_pressure_MPa: float
+    """Largest one of them."""
+    band_lowest_loss_percent: float
+    """Least friction loss of them; NaN where it is neither a target nor has a limit."""
+    band_highest_loss_percent: float
     """Largest one of them."""
 
 
@@ -81,46 +93,44 @@ class Checked:
 
     variant: int
     """Number of the variant."""
-    line: SolvedExcitation | None
-    """Excitation in line contact; None where edges bear under the lightest torque."""
-    resolved: SolvedExcitation | None
-    """Excitation with the contact resolved; None where it was not asked for."""
-    reasons: tuple[str, ...] = ()
-    """Why one of both could not be solved, a sentence each."""
+    line: SolvedVariant
+    """The variant in line contact."""
+    resolved: SolvedVariant = NOT_SOLVED
+    """The variant with the contact resolved."""
     rank: int = 0
     """1 of the best variant; 0 of the scene as it stands where it is not one of the best."""
     band: Variants | None = None
-    """b variants within its tolerances; None where it is not the best one, and without tolerances."""
+    """b variants within its tolerances; None where it has no rank, and without tolerances."""
 
     @property
     def timings(self) -> Timings:
         """Wall time of all its solutions [s]."""
-        return sum((each.timings for each in (self.line, self.resolved) if each is not None), Timings())
+        return self.line.timings + self.resolved.timings
 
     def figure(self, name: Figure, torques: int) -> tuple[float, float]:
         """A figure's largest value under all torques, of which there are so many, and its error: of the line contact
         or, where edges bear, of the resolved one."""
-        kind = {FIGURES[0]: "error", FIGURES[1]: "face_load", FIGURES[2]: "pressure"}[name]
+        kind = dict(zip(FIGURES, ("error", "face_load", "pressure", "loss")))[name]
         for solved in (self.line, self.resolved):
-            pairs = _figures(solved, torques)[kind]
+            pairs = solved.figures(torques)[kind]
             if np.isfinite([value for value, _ in pairs]).all():
                 return max(pairs)
         return math.nan, math.nan
 
     def rows(self, torques: Sequence[float]) -> Iterator[BestRow]:
         """A row for each torque [N·mm], ascending."""
-        line, resolved = (_figures(each, len(torques)) for each in (self.line, self.resolved))
+        line, resolved = (each.figures(len(torques)) for each in (self.line, self.resolved))
         for j, torque in enumerate(torques):
             yield BestRow(
                 self.rank, self.variant, 1e-3 * torque, *line["error"][j], *line["stiffness"][j], *line["face_load"][j],
-                *line["pressure"][j], *resolved["error"][j], *resolved["stiffness"][j], self._left_out(j),
-                *self._band(j),
+                *line["pressure"][j], *line["loss"][j], *resolved["error"][j], *resolved["stiffness"][j],
+                *resolved["loss"][j], self._left_out(j), *self._band(j),
             )
 
     def _known(self, torque: int) -> Floats:
-        """(b', 3) figures of variants within the tolerances, without those of which edges bear under a torque."""
+        """(b', 4) figures of variants within the tolerances, without those of which edges bear under a torque."""
         figures = np.zeros((0, ON_EDGES + 1)) if self.band is None else self.band.figures[:, torque]
-        return np.asarray(figures[figures[:, ON_EDGES] <= MOST_ON_EDGES][:, [PEAK_TO_PEAK, FACE_LOAD, PRESSURE]])
+        return np.asarray(figures[figures[:, ON_EDGES] <= MOST_ON_EDGES][:, [*COLUMN.values()]])
 
     def _left_out(self, torque: int) -> int:
         """Number of variants within the tolerances without figures under a torque."""
@@ -129,7 +139,7 @@ class Checked:
     def _band(self, torque: int) -> Iterator[float]:
         """Least and largest of each figure within the tolerances."""
         known = self._known(torque)
-        for column in known.T if len(known) else np.full((3, 1), math.nan):
+        for column in known.T if len(known) else np.full((len(COLUMN), 1), math.nan):
             yield from (float(column.min()), float(column.max()))
 
 
@@ -143,22 +153,3 @@ def ranked(checked: Sequence[Checked], best: Sequence[int], section: DesignSecti
         sizes = {each.variant: each.figure(FIGURES[0], torques)[0] for each in among}
         among.sort(key=lambda each: (not sizes[each.variant] <= most, sizes[each.variant]))
     return [*(replace(each, rank=rank) for rank, each in enumerate(among, 1)), *others]
-
-
-Pairs = list[tuple[float, float]]
-
-
-def _figures(solved: SolvedExcitation | None, count: int) -> Mapping[str, Pairs]:
-    """Figures with their errors under `count` torques, of which the heaviest ones may have none."""
-    unknown: Pairs = [(math.nan, math.nan)] * count
-    if solved is None:
-        return dict.fromkeys(("error", "stiffness", "face_load", "pressure"), unknown)
-    excitation, companion = solved.excitation, solved.companion
-    curves, facts = list(pitch_curves(excitation, companion)), line_facts(excitation, companion)
-    found = {
-        "error": [(float(np.ptp(each[LOADED].values)), each[LOADED].peak_to_peak_error) for each in curves],
-        "stiffness": [(float(np.mean(each[TANGENT].values)), each[TANGENT].mean_error) for each in curves],
-        "face_load": list(zip(facts.face_load_factor.tolist(), facts.face_load_factor_error.tolist())),
-        "pressure": list(zip(facts.largest_pressure_MPa.tolist(), facts.largest_pressure_MPa_error.tolist())),
-    }
-    return {name: [*pairs, *unknown[len(pairs) :]] for name, pairs in found.items()}

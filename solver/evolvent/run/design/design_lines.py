@@ -3,22 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
 from evolvent.results.archive.error_bar_data import plus_minus
+from evolvent.results.drawing.labels import label
+from evolvent.results.tables.table import SceneValue
 from evolvent.run.design.checked import BEST, BestRow, Checked
 from evolvent.run.design.design_space import DesignSpace
 from evolvent.run.design.evaluation import Variants
-from evolvent.run.design.ranking import Ranking
+from evolvent.run.design.ranking import SAME, Ranking
 from evolvent.run.design.tables import ALLOWED, DESIGN, EDGES, FRONT, VariantRow
-from evolvent.scene.schema.design import FIGURES, keys_of_both
+from evolvent.scene.schema.design import FIGURES, Figure, keys_of_both
 from evolvent_meshes.arrays import Floats
 
 BEST_SCENE = "best.toml"
 """Scene with the modifications of the best variant."""
+TARGETS = SceneValue("scene.toml", "design.targets")
+"""Targets of the scene."""
+BAND_ENDS: Mapping[Figure, str] = MappingProxyType(dict(zip(FIGURES, (
+    "band_highest_peak_to_peak_um", "band_highest_face_load_factor", "band_highest_pressure_MPa",
+    "band_highest_loss_percent",
+))))
+"""Figure -> column with its largest value within the tolerances."""
 
 
 def design_lines(folder: Path) -> Iterator[str]:
@@ -30,9 +40,35 @@ def design_lines(folder: Path) -> Iterator[str]:
     best = [row for row in rows if row.rank == 1]
     if best:
         yield f"best: variant {best[0].variant}, {modifications(variants[best[0].variant], variants)}"
+    yield from _most_robust(rows, TARGETS.read(folder))
     for row in best:
         before = next(each for each in rows if each.variant == 0 and each.torque_Nm == row.torque_Nm)
         yield f"{row.torque_Nm:.4g} N·m: transmission error {'; '.join(_figures(row, before))}"
+
+
+def _most_robust(rows: Sequence[BestRow], targets: Sequence[Figure] | None) -> Iterator[str]:
+    """A sentence on another of the best variants whose first target is smaller within the tolerances. targets: of the
+    scene; None where it has those by default."""
+    target = targets[0] if targets else FIGURES[0]
+    ranks = sorted({row.rank for row in rows if row.rank})
+    groups = {rank: [row for row in rows if row.rank == rank] for rank in ranks}
+    worst = {rank: _largest_within(group, BAND_ENDS[target]) for rank, group in groups.items()}
+    least = min(worst, key=lambda rank: worst[rank], default=1)
+    if least == 1 or math.isinf(worst[least]) or worst[least] > (1.0 - SAME) * worst[1]:
+        return
+    first = f"up to {worst[1]:.4g}" if math.isfinite(worst[1]) else "not known, as edges of tips bear"
+    yield (
+        f"within tolerances variant {groups[least][0].variant}, of rank {least}, is better: {label(target)} up to "
+        f"{worst[least]:.4g}, of the best one {first}"
+    )
+
+
+def _largest_within(rows: Sequence[BestRow], column: str) -> float:
+    """Largest value of a figure within the tolerances of a variant under all torques; ∞ where it is not known of one of
+    the variants."""
+    values = [getattr(row, column) for row in rows]
+    known = np.isfinite(values).all() and not any(row.band_left_out for row in rows)
+    return float(max(values)) if known else math.inf
 
 
 def modifications(row: VariantRow, variants: Sequence[VariantRow]) -> str:
@@ -57,7 +93,16 @@ def _figures(row: BestRow, before: BestRow) -> Iterator[str]:
         yield f"K_Hβ {plus_minus(row.face_load_factor, row.face_load_factor_error, 2)}"
     if not math.isnan(row.largest_pressure_MPa):
         yield f"p_0 {plus_minus(row.largest_pressure_MPa, row.largest_pressure_MPa_error, 0)} MPa"
+    yield from _loss(row)
     yield from _band(row)
+
+
+def _loss(row: BestRow) -> Iterator[str]:
+    """Friction loss, where it was asked for."""
+    if not math.isnan(row.loss_percent):
+        yield f"loss {plus_minus(row.loss_percent, row.loss_percent_error, 3)} %"
+    if not math.isnan(row.resolved_loss_percent):
+        yield f"loss resolved {plus_minus(row.resolved_loss_percent, row.resolved_loss_percent_error, 3)} %"
 
 
 def _before(before: BestRow) -> str:
@@ -75,6 +120,8 @@ def _band(row: BestRow) -> Iterator[str]:
     if not math.isnan(row.band_lowest_face_load_factor):
         yield f"K_Hβ {row.band_lowest_face_load_factor:.2f} to {row.band_highest_face_load_factor:.2f}"
     yield f"p_0 {row.band_lowest_pressure_MPa:.0f} to {row.band_highest_pressure_MPa:.0f} MPa"
+    if not math.isnan(row.band_lowest_loss_percent):
+        yield f"loss {row.band_lowest_loss_percent:.3f} to {row.band_highest_loss_percent:.3f} %"
 
 
 def design_warnings(
@@ -92,9 +139,8 @@ def design_warnings(
         yield from _about_best(ranking, best)
         yield from _within_tolerances(space, best)
     for each in checked:
-        yield from (f"variant {each.variant}, {sentence}" for sentence in each.reasons)
         for name, solved in (("line contact", each.line), ("resolved contact", each.resolved)):
-            for sentence in solved.warnings if solved is not None else ():
+            for sentence in (*solved.reasons, *solved.warnings):
                 yield f"variant {each.variant}, {name}: {sentence}"
 
 
@@ -110,7 +156,8 @@ def _none_allowed(ranking: Ranking) -> Iterator[str]:
 
 def _about_best(ranking: Ranking, best: Checked) -> Iterator[str]:
     """Sentences on variants that cannot be told from the best one, and on those that were not looked at."""
-    value, error = best.figure(ranking.section.targets[0], ranking.figures.shape[1])
+    count = ranking.figures.shape[1]
+    (_, error), (value, _) = (best.figure(name, count) for name in (ranking.section.targets[0], FIGURES[0]))
     if others := len(ranking.like(best.variant, error)):
         yield f"{others} other variants lie within the error bar of the best one: choose among them by design.csv."
     if FIGURES[0] in ranking.section.targets and (left := len(ranking.left_out(value))):

@@ -13,15 +13,10 @@ from scipy.stats import qmc
 
 from evolvent.scene.scene import Scene, derived_values
 from evolvent.scene.schema.dependence import value_at
-from evolvent.scene.schema.design import ROUNDING, DesignSection, Vary, expanded, keys_of_both
+from evolvent.scene.schema.design import CORNERS, LOSS, SPREAD, DesignSection, expanded, keys_of_both
 from evolvent.scene.schema.flank import LEAST
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.modifications.modifications import SIGNED
-
-CORNERS = 5
-"""Largest number of deviations of which all combinations of extreme values are computed."""
-SPREAD = 32
-"""Number of combinations of deviations between the extreme ones, by a Sobol sequence."""
 
 
 @dataclass(frozen=True)
@@ -41,12 +36,12 @@ class DesignSpace:
     @property
     def counts(self) -> tuple[int, ...]:
         """(v,) number of values of each row of `vary`."""
-        return tuple(_count(row) for row in self.section.vary)
+        return tuple(row.size for row in self.section.vary)
 
     @property
-    def size(self) -> int:
-        """Number of points of the lattice."""
-        return math.prod(self.counts)
+    def friction(self) -> float:
+        """Friction coefficient of the loss; 0 where no loss is asked for."""
+        return self.scene.contact.friction[0] if LOSS in self.section.asked else 0.0
 
     @property
     def as_it_stands(self) -> Floats:
@@ -74,7 +69,7 @@ class DesignSpace:
 
     def deviating(self, variant: Floats) -> Floats:
         """Variants (n, k) within the tolerances of one (k,): it itself, the combinations of extreme deviations, and
-        some in between. Amounts that cannot be negative end at 0."""
+        some in between (a Sobol sequence). Amounts that cannot be negative end at 0."""
         amounts = {name: row.amount for row in self.section.tolerances for name in keys_of_both(row.key)}
         if not amounts:
             return variant[None]
@@ -103,11 +98,6 @@ class DesignSpace:
         for section in dict.fromkeys(name.partition(".")[0] for name in self.keys):
             own = {name: float(value) for name, value in zip(self.keys, variant) if name.startswith(f"{section}.")}
             yield section, {name.partition(".")[2]: value for name, value in own.items()}
-
-
-def _count(row: Vary) -> int:
-    """Number of values of an axis."""
-    return math.floor((row.highest - row.lowest) / row.step * (1.0 + ROUNDING)) + 1
 
 
 def _may_be_negative(name: str) -> bool:

@@ -126,9 +126,9 @@ def kept_variants(store: Store, keys: int, torques: int) -> Variants:
 
 
 def design_store(call: Call, space: DesignSpace, torques: tuple[float, ...]) -> Store:
-    """Store of a design's variants, which depend on the gears, the torques and the keys that vary; neither on targets
-    and limits nor on the search."""
-    bare = space.scene.changed("contact", friction=(0.0,))
+    """Store of a design's variants, which depend on the gears, the torques, the keys that vary and the friction of a
+    loss; neither on other targets and limits nor on the search."""
+    bare = space.scene.changed("contact", friction=(space.friction,))
     bare = bare.model_copy(update={"dynamics": None, "design": None, "wear": None})
     identity = hashlib.sha256(f"{fingerprint(bare)} {torques} {space.keys}".encode()).hexdigest()
     return Store(call.folder, identity, another)
@@ -137,7 +137,8 @@ def design_store(call: Call, space: DesignSpace, torques: tuple[float, ...]) -> 
 def another(path: Path) -> str:
     """Message on variants of another scene."""
     return (
-        f"{path}: wanted variants of this scene, found those of other gears, torques, positions or keys that vary; "
-        "--resume goes on with the scene that it was called with (targets, limits and samples may differ), --out names "
-        "another folder, --overwrite computes anew"
+        f"{path}: wanted variants of this scene, found those of other gears, torques, positions or keys that vary, or "
+        "with another friction coefficient of the loss; --resume goes on with the scene that it was called with "
+        "(targets, limits and samples may differ, all but loss_percent), --out names another folder, --overwrite "
+        "computes anew"
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from evolvent.results.drawing.labels import UNITS, ending, label
 from evolvent.results.drawing.style import FAINT, HOLLOW, INK, PINION, PRESSURE_MAP, WHEEL, foot, sheet
 from evolvent.run.design.checked import BestRow
 from evolvent.run.design.tables import ALLOWED, BEYOND, EDGES, FRONT, VariantRow
-from evolvent.scene.schema.design import FIGURES
+from evolvent.scene.schema.design import FIGURES, LOSS
 from evolvent_meshes.arrays import Floats
 
 BEFORE, AFTER = WHEEL, PINION
@@ -24,14 +25,16 @@ ASIDE = 0.008
 LEAST_HEIGHT = 0.5
 """Ratio of the smallest and the largest value from which on an axis does not begin at zero."""
 TARGET = FIGURES[0]
-WORDS, WORST = "transmission error, peak to peak [µm]", "largest peak-to-peak transmission error [µm]"
+RESOLVED: Mapping[str, str] = MappingProxyType({TARGET: "resolved_peak_to_peak_um", LOSS: "resolved_loss_percent"})
+"""Figure -> column of the resolved contact, of those that have one."""
+WORDS = "transmission error, peak to peak [µm]"
 
 
 def design_figure(
     title: str, section: Mapping[str, Any], variants: Sequence[VariantRow], best: Sequence[BestRow]
 ) -> Figure:
-    """Peak-to-peak transmission error over the torque before and after, beside that of all variants. section: [design]
-    as scene.toml has it."""
+    """Peak-to-peak transmission error over the torque before and after, beside the first target of all variants.
+    section: [design] as scene.toml has it."""
     first = [row for row in best if row.rank == 1]
     before = [row for row in best if row.variant == 0]
     names = varying(variants)
@@ -39,13 +42,16 @@ def design_figure(
     figure = sheet("Flank modifications", said, (12.6, 5.6))
     left, right = figure.subplots(1, 2)
     _over_torque(left, before, first)
+    target = (section.get("targets") or [TARGET])[0]
     if len(names) == 1:
-        _curve(right, variants, names[0], best)
-    elif len(names) == 2 and (grid := lattice(variants, names)) is not None:
-        _map(figure, right, variants, names, grid, first)
+        _curve(right, variants, names[0], best, target)
+    elif len(names) == 2 and (grid := lattice(variants, names, target)) is not None:
+        _map(figure, right, variants, names, grid, first, target)
     else:
         _scatter(right, section, variants, first)
-    foot(figure, "Line contact without friction; bars: estimated error.", *_left_out(variants))
+    has_loss = bool(np.isfinite([row.loss_percent for row in variants]).any())
+    without = f"Line contact without friction{', but for the loss' if has_loss else ''}; bars: estimated error."
+    foot(figure, without, *_left_out(variants))
     return figure
 
 
@@ -121,27 +127,36 @@ def _values(variants: Sequence[VariantRow], name: str) -> Floats:
     return np.array([row.values[name] for row in variants])
 
 
-def _target(variants: Sequence[VariantRow]) -> tuple[Floats, Floats]:
-    """Largest peak-to-peak transmission error of allowed variants, and of those beyond limits; NaN of others."""
-    values = np.array([row.transmission_error_peak_to_peak_um for row in variants])
+def _worst(name: str) -> str:
+    """A figure's largest value under all torques, in words."""
+    if name == TARGET:
+        return "largest peak-to-peak transmission error [µm]"
+    return f"largest {label(name).removeprefix('largest ')}"
+
+
+def _target(variants: Sequence[VariantRow], target: str) -> tuple[Floats, Floats]:
+    """A figure of allowed variants, and of those beyond limits; NaN of others."""
+    values = np.array([getattr(row, target) for row in variants], dtype=float)
     allowed = np.array([row.status in (ALLOWED, FRONT) for row in variants])
     return np.where(allowed, values, np.nan), np.where(allowed, np.nan, values)
 
 
-def _curve(axes: Axes, variants: Sequence[VariantRow], name: str, best: Sequence[BestRow]) -> None:
+def _curve(
+    axes: Axes, variants: Sequence[VariantRow], name: str, best: Sequence[BestRow], target: str
+) -> None:
     """Target over the only key that varies, of the scene as it stands, too."""
     own = variants if variants[0].values[name] in {row.values[name] for row in variants[1:]} else variants[1:]
     own = sorted(own, key=lambda row: row.values[name])
-    allowed, beyond = _target(own)
+    allowed, beyond = _target(own, target)
     x = _values(own, name)
     axes.plot(x, allowed, color=INK, marker=".", lw=1.4, label="line contact")
     if np.isfinite(beyond).any():
         axes.plot(x, beyond, color=FAINT, marker=".", lw=0.0, label="beyond a limit")
     groups = [[row for row in best if row.rank == rank] for rank in range(1, 1 + max(row.rank for row in best))]
-    found = [(variants[rows[0].variant].values[name], _largest(rows, "resolved")) for rows in groups]
-    if np.isfinite(found).any():
+    found = [(variants[rows[0].variant].values[name], _largest_resolved(rows, target)) for rows in groups]
+    if np.isfinite([y for _, y in found]).any():
         axes.plot(*np.transpose(found), label="contact resolved", **{**HOLLOW, "marker": "s"}, color=AFTER)
-    _mark(axes, [(variants[rows[0].variant].values[name], _largest(rows)) for rows in groups[:1]])
+    _mark(axes, [(variants[rows[0].variant].values[name], _largest(rows, target)) for rows in groups[:1]])
     known = [*allowed[np.isfinite(allowed)], *(y for _, y in found if np.isfinite(y))]
     low = min(known, default=0.0)
     axes.set_ylim(bottom=0.0 if not known or low < LEAST_HEIGHT * max(known) else 0.9 * low)
@@ -150,11 +165,11 @@ def _curve(axes: Axes, variants: Sequence[VariantRow], name: str, best: Sequence
         axes.plot(bears, np.full(len(bears), axes.get_ylim()[0]), color=FAINT, marker="|", markersize=9.0, lw=0.0,
                   clip_on=False, label="edges of tips bear")
     axes.set_xlabel(_axis_label(variants, name))
-    axes.set_ylabel(WORST)
+    axes.set_ylabel(_worst(target))
     axes.legend(loc="best")
 
 
-def lattice(variants: Sequence[VariantRow], names: Sequence[str]) -> Floats | None:
+def lattice(variants: Sequence[VariantRow], names: Sequence[str], target: str) -> Floats | None:
     """(q, p) target over the different values of two keys; None where less than half of the combinations are known."""
     own = _on_lattice(variants, names)
     first, second = (np.unique(_values(own, name)) for name in names)
@@ -162,7 +177,7 @@ def lattice(variants: Sequence[VariantRow], names: Sequence[str]) -> Floats | No
         return None
     grid = np.full((len(second), len(first)), np.nan)
     columns, rows = (np.searchsorted(axis, _values(own, name)) for axis, name in zip((first, second), names))
-    grid[rows, columns] = _target(own)[0]
+    grid[rows, columns] = _target(own, target)[0]
     return grid
 
 
@@ -175,7 +190,7 @@ def _on_lattice(variants: Sequence[VariantRow], names: Sequence[str]) -> Sequenc
 
 def _map(
     figure: Figure, axes: Axes, variants: Sequence[VariantRow], names: Sequence[str], grid: Floats,
-    best: Sequence[BestRow],
+    best: Sequence[BestRow], target: str,
 ) -> None:
     """Target over two keys. Variants of which edges bear are hatched, those beyond a limit dotted."""
     own = _on_lattice(variants, names)
@@ -191,7 +206,7 @@ def _map(
         norm = Normalize(low - 0.3 * (high - low), high)  # the best value has a colour of its own, too
         drawn = axes.pcolormesh(first, second, np.ma.masked_invalid(grid), cmap=PRESSURE_MAP, norm=norm,
                                 shading="nearest")
-        figure.colorbar(drawn, ax=axes, pad=0.015, label=WORST)
+        figure.colorbar(drawn, ax=axes, pad=0.015, label=_worst(target))
     _mark(axes, [tuple(variants[row.variant].values[name] for name in names) for row in best[:1]])
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper right")
@@ -211,7 +226,7 @@ def _scatter(axes: Axes, section: Mapping[str, Any], variants: Sequence[VariantR
     """Another figure over the transmission error: the second target, else one with a limit, else the pressure."""
     limits = dict(section.get("limits", ()))
     name = next(each for each in (*section.get("targets", ()), *limits, FIGURES[2]) if each != TARGET)
-    allowed, beyond = _target(variants)
+    allowed, beyond = _target(variants, TARGET)
     other = np.array([getattr(row, name) for row in variants], dtype=float)
     axes.scatter(beyond, other, s=14.0, color=FAINT, alpha=0.6, lw=0.0, label="beyond a limit")
     axes.scatter(allowed, other, s=16.0, color=INK, alpha=0.7, lw=0.0, label="allowed")
@@ -223,17 +238,21 @@ def _scatter(axes: Axes, section: Mapping[str, Any], variants: Sequence[VariantR
     for key, draw in ((name, axes.axhline), (TARGET, axes.axvline)):
         if key in limits:
             draw(limits[key], color=FAINT, lw=1.2, ls="--", label="limit")
-    _mark(axes, [(_largest(best), other[row.variant]) for row in best[:1]])
+    _mark(axes, [(_largest(best, TARGET), other[row.variant]) for row in best[:1]])
     axes.legend(loc="best")
-    axes.set_xlabel(WORST)
-    axes.set_ylabel(f"largest {label(name).removeprefix('largest ')}")
+    axes.set_xlabel(_worst(TARGET))
+    axes.set_ylabel(_worst(name))
 
 
-def _largest(rows: Sequence[BestRow], kind: str = "transmission_error") -> float:
-    """Largest peak-to-peak transmission error of a variant under all torques; of the resolved contact where edges bear,
-    and by kind = "resolved"."""
-    values = [getattr(row, f"{kind}_peak_to_peak_um") for row in rows]
-    return float(max(values if np.isfinite(values).all() else [row.resolved_peak_to_peak_um for row in rows]))
+def _largest(rows: Sequence[BestRow], target: str) -> float:
+    """Largest value of a figure of a variant under all torques; of the resolved contact where edges bear."""
+    values = [getattr(row, target) for row in rows]
+    return float(max(values)) if np.isfinite(values).all() else _largest_resolved(rows, target)
+
+
+def _largest_resolved(rows: Sequence[BestRow], target: str) -> float:
+    """Largest value of a figure with the contact resolved, under all torques; NaN where there is none."""
+    return float(max(getattr(row, RESOLVED[target]) for row in rows)) if target in RESOLVED else float("nan")
 
 
 def _mark(axes: Axes, places: Sequence[tuple[float, ...]]) -> None:

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
-from evolvent.run.design.variant_mesh import FACE_LOAD, ON_EDGES, PEAK_TO_PEAK, PRESSURE
+from evolvent.run.design.variant_mesh import FACE_LOAD, LOST, ON_EDGES, PEAK_TO_PEAK, PRESSURE
 from evolvent.scene.schema.design import FIGURES, DesignSection, Figure
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
-COLUMN = dict(zip(FIGURES, (PEAK_TO_PEAK, FACE_LOAD, PRESSURE)))
+COLUMN = dict(zip(FIGURES, (PEAK_TO_PEAK, FACE_LOAD, PRESSURE, LOST)))
 """Name of a figure -> its column."""
 COMPETING = 0.2
 """Largest part of the load that edges of tips may bear of a variant that competes, where its contact is resolved before
@@ -41,8 +41,7 @@ class Ranking:
     def most_on_edges(self) -> float:
         """Largest part of the load that edges of tips may bear of a variant that competes: `COMPETING` where a resolved
         contact will have its targets and limits, which are no other than the transmission error."""
-        asked = {*self.section.targets, *(limit.figure for limit in self.section.limits)}
-        return COMPETING if self.is_resolved and asked == {FIGURES[0]} else MOST_ON_EDGES
+        return COMPETING if self.is_resolved and self.section.asked == {FIGURES[0]} else MOST_ON_EDGES
 
     def largest(self, name: Figure) -> Floats:
         """(n,) a figure's largest value under all torques; NaN where one is missing."""

@@ -27,7 +27,7 @@ def search(space: DesignSpace, evaluation: Evaluation, is_resolved: bool) -> Non
     """Computes the variants of a design that its section asks for. Collective. is_resolved: as of `Ranking`. Raises as
     `Evaluation.of`."""
     section = space.section
-    if space.size <= section.samples:
+    if section.size <= section.samples:
         evaluation.of(space.variants(space.lattice()))
     elif section.search == "sobol":
         evaluation.of(space.variants(space.sobol(section.samples)))

@@ -31,6 +31,9 @@ class VariantRow:
     """Face load factor K_Hβ (ISO 6336-1:2006, 7.2.2), the largest under all torques; NaN in the plane."""
     largest_pressure_MPa: float
     """Largest of Hertz' p_0 under all torques, away from edges of tips and from starts of linear reliefs."""
+    loss_percent: float
+    """Friction loss over the input of the pitch, the largest under all torques; NaN where it is neither a target nor
+    has a limit."""
     on_edges_percent: float
     """Largest part of the load that edges of tips bear. Above 1 % the contact is no line contact, and the variant has
     no figures."""
@@ -54,8 +57,8 @@ def variant_rows(section: DesignSection, keys: Sequence[str], variants: Variants
         status = FAILED if variants.reasons[number] else EDGES if edges[number] else BEYOND
         if allowed[number]:
             status = FRONT if front[number] and len(section.targets) > 1 else ALLOWED
-        peak_to_peak, factor, pressure = map(float, found)
+        peak_to_peak, factor, pressure, loss = map(float, found)
         yield VariantRow(
-            number, dict(zip(keys, map(float, values))), peak_to_peak, factor, pressure,
+            number, dict(zip(keys, map(float, values))), peak_to_peak, factor, pressure, loss,
             100.0 * float(ranking.on_edges[number]), status, variants.reasons[number],
         )

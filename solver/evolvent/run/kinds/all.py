@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from evolvent.scene.scene import Scene
+from evolvent.scene.schema.design import PERCENTS
 
 if TYPE_CHECKING:
     from evolvent.run.computation import Computation
@@ -112,12 +113,12 @@ evolvent transient demos/he2022.toml --out out/transient --level quick --set tra
         "design", "design:Design", """Vary a pair's flank modifications and find the best.
 
     Reliefs, crownings and slopes as the section [design] says, under each of a list of torques: transmission error,
-    K_Hβ and pressure of all variants in line contact, on gears that are condensed once; the best ones with the contact
-    resolved beside.
+    K_Hβ, pressure and friction loss of variants in line contact, on gears that are condensed once; the best ones with
+    the contact resolved beside.
     """, """\
 evolvent design demos/he2022.toml --out out/design --set design.vary='[["both.tip_relief_um",0,30,2]]'
 mpirun -n 2 evolvent design demos/yang2022_design.toml --out out/design""",
-        percents=(25.0, 50.0, 75.0, 100.0), in_studies=False,
+        percents=PERCENTS, in_studies=False,
     ),
     Kind(
         "strength", "strength:Strength", """Compute the stress at the roots of a pair's teeth.

@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
 from typing import ClassVar, Self
 
 import numpy as np
 
-from evolvent.dynamics.excitation.loaded_mesh import EdgeContact
+from evolvent.check.design_rows import design_refusals
 from evolvent.dynamics.of_scene import check_positions
 from evolvent.gears.shared_gears import SharedGears
-from evolvent.gears.solution.certificates import BalanceError
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.table_pictures import TablePicture
 from evolvent.results.tables.table import SCENE_TITLE, Filled, SceneValue
 from evolvent.run.call import Call
-from evolvent.run.companion import Attempt
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.design.checked import BEST, Checked, ranked
 from evolvent.run.design.design_lines import BEST_SCENE, design_lines, design_warnings
@@ -29,20 +27,20 @@ from evolvent.run.design.design_space import DesignSpace
 from evolvent.run.design.evaluation import KEPT, Evaluation, Variants, design_store, kept_variants, no_variants
 from evolvent.run.design.ranking import Ranking
 from evolvent.run.design.search import search
+from evolvent.run.design.solved_variant import LOST, shared_gears, solved_variant
 from evolvent.run.design.tables import BAND, DESIGN, variant_rows
 from evolvent.run.design.variant_mesh import VariantMesh
-from evolvent.run.dynamics.excitation import SolvedExcitation, solved_excitation
 from evolvent.run.dynamics.scene_torques import SceneTorques, listed_torques
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.line_level import LINE
 from evolvent.scene.part_torque import under_torque
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.design import DesignSection, expanded
+from evolvent.scene.schema.design import LOSS, DesignSection, expanded
 from evolvent.scene.schema.errors import NOTHING, InputProblem, SceneError
 from evolvent.scene.skips import line_scene
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.modifications.modifications import OVER_FACE
+from evolvent_meshes.gears.pair import GearPair
 
 SECTION = SceneValue("scene.toml", "design")
 """Targets and limits, as the picture needs them."""
@@ -81,7 +79,8 @@ class Design(Computation[SolvedDesign]):
     command: ClassVar[str] = "design"
     in_line_contact: ClassVar[bool] = True
     outputs: ClassVar[Outputs] = Outputs(
-        (DESIGN.name, BEST.name, BAND.name), (PICTURE,), (BEST_SCENE,), (KEPT, "results/excitation_*.npz"), design_lines
+        (DESIGN.name, BEST.name, BAND.name), (PICTURE,), (BEST_SCENE,),
+        (KEPT, "results/excitation_*.npz", f"results/*{LOST}*.npz"), design_lines,
     )
 
     @classmethod
@@ -139,10 +138,11 @@ class Design(Computation[SolvedDesign]):
         return 0 if self.scene.mesh.level == LINE else self.section.verified
 
     def check(self) -> None:
-        """Raises SceneError without a section [design], for K_Hβ of gears in the plane, and for a number of positions
-        without harmonics."""
-        figures = {*self.section.targets, *(limit.figure for limit in self.section.limits)}
-        if "face_load_factor" in figures and gear_problem(self.on_lines).is_plane:
+        """Raises SceneError without a section [design], for a loss without one friction coefficient, for K_Hβ of gears
+        in the plane, and for a number of positions without harmonics."""
+        if problems := design_refusals(self.scene, self.section):
+            raise SceneError(problems)
+        if "face_load_factor" in self.section.asked and gear_problem(self.on_lines).is_plane:
             found, allowed = "face_load_factor of gears in the plane", "figures that they have"
             remedy = "leave it out, or let a modification over the face or pair.misalignment_um vary or deviate"
             raise SceneError([InputProblem("design", found, allowed, remedy)])
@@ -167,16 +167,17 @@ class Design(Computation[SolvedDesign]):
         with call.beginning(self.scene, gears.prepare) as prepare:
             shared = call.preparing(prepare)
             evaluation = Evaluation(call, store, cache(lambda: self._mesh(shared)), known)
-            evaluation.expected = 1 + min(space.size, self.section.samples)
+            evaluation.expected = 1 + min(self.section.size, self.section.samples)
             evaluation.of(space.as_it_stands[None])
             search(space, evaluation, bool(self._verified))
             found, seconds = evaluation.asked, time.perf_counter() - begin
             best = Ranking(self.section, found.figures, bool(self._verified)).checked
             checked = [self._checked(call, shared, n, found.values[n]) for n in dict.fromkeys([0, *best])]
-            first, *others = ranked(checked, best, self.section, size[1])
-            if first.rank and self.section.tolerances:
-                first = replace(first, band=evaluation.of(space.deviating(found.values[first.variant])))
-        return SolvedDesign(found, (first, *others), seconds)
+            checked = ranked(checked, best, self.section, size[1])
+            if self.section.tolerances:
+                within = [space.deviating(found.values[each.variant]) if each.rank else None for each in checked]
+                checked = [replace(each, band=b if b is None else evaluation.of(b)) for each, b in zip(checked, within)]
+        return SolvedDesign(found, tuple(checked), seconds)
 
     def results(self, call: Call, solved: SolvedDesign) -> Results:
         """Tables of all variants and of the best ones, and the scene with the best one."""
@@ -205,37 +206,27 @@ class Design(Computation[SolvedDesign]):
         space, loads = self.space, self._on_lines(self.space.as_it_stands)
         angles = np.array(uniform_pitch(loads.problem.pair.pinion.z, self.scene.sweep.positions).angles)
         model = call.gears(loads.problem).model
-        return VariantMesh.of(model, lambda variant: space.scene_of(variant).gear_pair(), loads.torques, angles)
+
+        def pair_of(variant: Floats) -> GearPair:
+            return space.scene_of(variant).gear_pair()
+
+        return VariantMesh.of(model, pair_of, loads.torques, angles, space.friction)
 
     def _checked(self, call: Call, shared: Call, number: int, variant: Floats) -> Checked:
         """A variant (k,) with its error bars and, where that is asked for, with the contact resolved. Collective.
         shared: call with the gears in line contact."""
-        name = _hash(variant)
-        line = _attempted(lambda: solved_excitation(shared, self._on_lines(variant), f"line_{name}_"))
-        resolved: Attempt[SolvedExcitation] = Attempt()
-        if self._verified:
-            resolved = _attempted(lambda: solved_excitation(call, self._resolved(variant), f"resolved_{name}_"))
-        kinds = ("line contact", line), ("resolved contact", resolved)
-        reasons = tuple(f"{kind}: {each.reason}" for kind, each in kinds if each.reason)
-        return Checked(number, line.value, resolved.value, reasons)
+        name, has_loss = _hash(variant), LOSS in self.section.asked
+        line = solved_variant(shared, self._on_lines(variant), f"line_{name}", has_loss)
+        if not self._verified:
+            return Checked(number, line)
+        loads = self._resolved(variant)
+        resolving = call.preparing(shared_gears(loads).prepare) if has_loss else call
+        return Checked(number, line, solved_variant(resolving, loads, f"resolved_{name}", has_loss))
 
 
 def _write_scene(text: str, folder: RunFolder) -> None:
     """Writes the scene with the best variant."""
     folder.write_text(BEST_SCENE, text)
-
-
-def _attempted(solve: Callable[[], SolvedExcitation]) -> Attempt[SolvedExcitation]:
-    """The excitation of a variant, or why there is none: others do without it. Edges that bear are no failure, its rows
-    say so. Collective. Raises BalanceError: what is out of balance is an error, whichever variant it is."""
-    try:
-        return Attempt(solve())
-    except EdgeContact:
-        return Attempt()
-    except BalanceError:
-        raise
-    except ResultError as error:
-        return Attempt(reason=str(error))
 
 
 def _hash(variant: Floats) -> str:

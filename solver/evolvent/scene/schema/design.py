@@ -17,11 +17,19 @@ MODIFICATIONS = tuple(name for name, field in FlankKeys.model_fields.items() if 
 """Keys of [pinion] and [wheel] that may vary."""
 MISALIGNMENT = f"{PAIR}.misalignment_um"
 """Key that may deviate, but is nobody's choice."""
-Figure = Literal["transmission_error_peak_to_peak_um", "face_load_factor", "largest_pressure_MPa"]
+Figure = Literal["transmission_error_peak_to_peak_um", "face_load_factor", "largest_pressure_MPa", "loss_percent"]
 FIGURES: tuple[Figure, ...] = get_args(Figure)
 """Figures of a variant that can be targets and have limits."""
+LOSS: Figure = "loss_percent"
+"""Friction loss over the input of the pitch: computed where it is a target or has a limit."""
 ROUNDING = 1e-6
 """Part of a range by which its steps may miss its end."""
+CORNERS = 5
+"""Largest number of deviations of which all combinations of extreme values are computed."""
+SPREAD = 32
+"""Number of combinations of deviations between the extreme ones."""
+PERCENTS = 25.0, 50.0, 75.0, 100.0
+"""Torques of `evolvent design` where none are given [% of load.torque_Nm]."""
 MOST_VARIABLES, MOST_SAMPLES, MOST_VERIFIED = 8, 100_000, 10
 KEY = (
     f"pinion, wheel or {BOTH} (the same on both gears), a dot, and one of {', '.join(MODIFICATIONS)}"
@@ -39,6 +47,11 @@ class Vary(NamedTuple):
     """Highest value."""
     step: float
     """Distance of the values."""
+
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return math.floor((self.highest - self.lowest) / self.step * (1.0 + ROUNDING)) + 1
 
 
 class Tolerance(NamedTuple):
@@ -104,7 +117,7 @@ class DesignSection(SceneSection):
         default=500, ge=1, le=MOST_SAMPLES,
     )
     tolerances: Annotated[tuple[Tolerance, ...], rows(Tolerance)] = key(
-        f"deviations in production, for the band of the best variant: rows of key and amount to either side; also "
+        f"deviations in production, for the bands of the best variants: rows of key and amount to either side; also "
         f"{MISALIGNMENT}",
         f"a list of up to {MOST_VARIABLES} rows [key, amount]",
         'write for example tolerances = [["both.tip_relief_um", 5.0]]', default=(), max_length=MOST_VARIABLES,
@@ -114,6 +127,23 @@ class DesignSection(SceneSection):
         "stands beside them; 0: none",
         f"a whole number from 0 to {MOST_VERIFIED}", default=1, ge=0, le=MOST_VERIFIED,
     )
+
+    @property
+    def size(self) -> int:
+        """Number of variants: combinations of the values of all that varies."""
+        return math.prod(row.size for row in self.vary)
+
+    @property
+    def deviations(self) -> int:
+        """Number of variants within the tolerances of one, with itself; 0 without tolerances."""
+        count = len(expanded(self.tolerances))
+        corners, ones = (2**count if count <= CORNERS else 0), (2 * count if count > 1 else 0)
+        return 1 + corners + ones + SPREAD if count else 0
+
+    @property
+    def asked(self) -> set[Figure]:
+        """Figures that are targets or have limits."""
+        return {*self.targets, *(limit.figure for limit in self.limits)}
 
     @model_validator(mode="after")
     def _keys_are_modifications(self) -> Self:

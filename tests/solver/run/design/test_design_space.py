@@ -21,7 +21,8 @@ def space(*settings: str, vary: str = VARY) -> DesignSpace:
 def test_lattice_has_each_combination_once() -> None:
     """0, 4, 8 µm with −1, 0, 1 µm: nine points, pinion and wheel alike in the relief."""
     own = space()
-    assert own.keys == ("pinion.tip_relief_um", "wheel.tip_relief_um", "pinion.profile_slope_um") and own.size == 9
+    assert own.keys == ("pinion.tip_relief_um", "wheel.tip_relief_um", "pinion.profile_slope_um")
+    assert own.section.size == 9
     found = own.variants(own.lattice())
     assert found.tolist() == [[relief, relief, slope] for relief in (0.0, 4.0, 8.0) for slope in (-1.0, 0.0, 1.0)]
 
@@ -39,6 +40,17 @@ def test_sobol_points_are_different_and_inside() -> None:
     points = own.sobol(7)
     assert 4 <= len(points) <= 7 and len(np.unique(points, axis=0)) == len(points)
     assert (points >= 0).all() and (points < np.array(own.counts)).all()
+
+
+@pytest.mark.parametrize("count", [0, 1, 3, 6])
+def test_number_of_variants_within_tolerances(count: int) -> None:
+    """`evolvent check` tells the number of variants that are computed."""
+    keys = "tip_relief_um", "profile_crowning_um", "twist_um"
+    names = [f"{gear}.{key}" for gear in ("pinion", "wheel") for key in keys]
+    rows = ",".join(f'["{name}",2.0]' for name in names[:count])
+    own = space(f"design.tolerances=[{rows}]", vary='[["pinion.tip_relief_um",4.0,8.0,4.0]]')
+    computed = own.deviating(own.variants(own.lattice())[0])
+    assert len(computed) == max(1, own.section.deviations) and (own.section.deviations == 0) == (count == 0)
 
 
 def test_scene_of_a_variant_has_its_values() -> None:

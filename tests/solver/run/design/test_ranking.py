@@ -8,7 +8,7 @@ from evolvent.run.design.ranking import Ranking
 from evolvent.scene.schema.design import FIGURES, DesignSection, Vary
 from evolvent_meshes.arrays import Floats
 
-ERROR, FACTOR, PRESSURE = FIGURES
+ERROR, FACTOR, PRESSURE, LOSS = FIGURES
 VARY = (Vary("both.tip_relief_um", 0.0, 10.0, 1.0),)
 
 
@@ -17,13 +17,13 @@ def section(**given: object) -> DesignSection:
 
 
 def figures(*rows: tuple[float, float, float, float]) -> Floats:
-    """Figures under one torque."""
-    return np.array(rows)[:, None]
+    """Figures under one torque, without a loss."""
+    return np.insert(np.array(rows), 3, np.nan, axis=1)[:, None]
 
 
 def test_the_largest_value_of_all_torques_counts() -> None:
     """1 and 3 µm under two torques are worse than 2 and 2."""
-    found = np.array([[[1.0, 1.0, 900.0, 0.0], [3.0, 1.0, 900.0, 0.0]], [[2.0, 1.0, 900.0, 0.0]] * 2])
+    found = np.array([[[1.0, 1.0, 900.0, 0.5, 0.0], [3.0, 1.0, 900.0, 0.5, 0.0]], [[2.0, 1.0, 900.0, 0.5, 0.0]] * 2])
     ranking = Ranking(section(), found)
     assert ranking.largest(ERROR).tolist() == [3.0, 2.0] and ranking.best(1).tolist() == [1]
 
@@ -75,6 +75,16 @@ def test_equal_figures_leave_the_transmission_error_to_decide() -> None:
     rows = figures((6.0, 1.0, 1176.9699673, 0.0), (5.0, 1.0, 1176.9699674, 0.0))
     assert Ranking(section(targets=[PRESSURE]), rows).best(1).tolist() == [1]
     assert Ranking(section(targets=[PRESSURE, ERROR]), rows).front.tolist() == [False, True]
+
+
+def test_loss_as_target_and_as_limit() -> None:
+    """The loss is smallest of the second variant, whose transmission error is larger; of those up to 0.7 % the first
+    one has the smallest error. A variant without a loss is not allowed."""
+    rows = figures((1.0, 1.0, 900.0, 0.0), (2.0, 1.0, 900.0, 0.0), (0.5, 1.0, 900.0, 0.0), (0.1, 1.0, 900.0, 0.0))
+    rows[:, 0, 3] = 0.7, 0.6, 0.8, np.nan
+    assert Ranking(section(targets=[LOSS]), rows).best(9).tolist() == [1, 0, 2]
+    limited = Ranking(section(limits=[[LOSS, 0.7]]), rows)
+    assert limited.is_allowed.tolist() == [True, True, False, False] and limited.best(1).tolist() == [0]
 
 
 def test_variants_within_the_error_bar_of_the_best_one() -> None:

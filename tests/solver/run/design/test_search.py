@@ -11,6 +11,7 @@ import pytest
 from evolvent.run.design.design_space import DesignSpace
 from evolvent.run.design.evaluation import Evaluation, Variants
 from evolvent.run.design.search import search
+from evolvent.run.design.variant_mesh import FIGURES
 from evolvent_meshes.arrays import Floats
 from tests.support.gear_cases import spur_scene
 
@@ -28,7 +29,7 @@ class Distances:
         self.asked |= {tuple(row) for row in values.tolist()}
         off = np.abs(values - LEAST).sum(axis=1)
         error = 1.0 + 0.1 * off + 0.5 * np.sin(off) ** 2
-        return Variants(values, np.stack([error, 0.0 * off, 0.0 * off, 0.0 * off], axis=-1)[:, None], ("",) * len(off))
+        return Variants(values, np.stack([error, *[0.0 * off] * (FIGURES - 1)], axis=-1)[:, None], ("",) * len(off))
 
 
 def searched(*settings: str) -> set[tuple[float, ...]]:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from evolvent.commands.app import main
+from evolvent.results.archive.store import ArchiveError
 from evolvent.results.drawing.style import png_of
 from evolvent.run.design.checked import BEST, BestRow
 from evolvent.run.design.design_lines import design_lines
@@ -15,6 +16,7 @@ from evolvent.run.design.figures import design_figure
 from evolvent.run.design.tables import ALLOWED, BAND, DESIGN, EDGES, VariantRow
 from evolvent.run.kinds.design import Design
 from evolvent.run.kinds.excitation import Excitation
+from evolvent.run.kinds.losses import LOSSES, Losses
 from evolvent.scene.scene import SceneError, load_scene
 from tests.support.checkout import ROOT
 from tests.support.computing.quiet import quietly
@@ -35,8 +37,7 @@ def designed(folder: Path, *settings: str, percents: tuple[float, ...] = (100.0,
 @pytest.fixture(scope="module")
 def long_relief(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("long")
-    designed(folder, 'design.vary=[["both.tip_relief_um",4.4,7.6,0.2]]', "sweep.positions=20", "design.verified=2",
-             'design.tolerances=[["pinion.tip_relief_um",0.5]]')
+    designed(folder, 'design.vary=[["both.tip_relief_um",4.4,7.6,0.2]]', "sweep.positions=20", "design.verified=2")
     return folder
 
 
@@ -131,20 +132,95 @@ def test_refusals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert not (tmp_path / "out").exists()
 
 
+def test_loss_of_the_best_ones_is_that_of_losses(tmp_path: Path) -> None:
+    """Of reliefs of 20 and 30 µm the second has the smaller loss. In line contact and resolved, with its error bar, it
+    is what `evolvent losses` of best.toml writes, within the numbers of both tables."""
+    loss = 'design.vary=[["both.tip_relief_um",20.0,30.0,10.0]]', 'design.targets=["loss_percent"]', "sweep.positions=8"
+    bars = "contact.friction=0.1", "output.error_bars=true"
+    variants = designed(tmp_path / "design", *loss, *bars)
+    row = next(each for each in BEST.read(tmp_path / "design") if each.rank == 1)
+    assert row.variant == 2 and variants[2].loss_percent == pytest.approx(row.loss_percent, rel=1e-8)
+    for level, value, error in (
+        ("line", row.loss_percent, row.loss_percent_error),
+        ("quick", row.resolved_loss_percent, row.resolved_loss_percent_error),
+    ):
+        best = load_scene(tmp_path / "design/best.toml", [f"mesh={{level='{level}'}}"])
+        quietly(Losses.of(best, (100.0,)), tmp_path / level)
+        (own,) = LOSSES.read(tmp_path / level)
+        assert (value, error) == pytest.approx((own.loss_percent, own.loss_percent_error), rel=1e-6)
+    assert row.resolved_loss_percent == pytest.approx(row.loss_percent, rel=0.01)
+    assert any(f"loss {row.loss_percent:.3f}" in line for line in design_lines(tmp_path / "design"))
+
+
+def test_loss_is_unknown_where_edges_bear(tmp_path: Path) -> None:
+    """Edges of tips with a relief of 1 µm bear under the whole torque, not under 5 %: the scene as it stands has a loss
+    in line contact there alone; that of the resolved contact is known throughout."""
+    loss = 'design.vary=[["both.tip_relief_um",20.0,30.0,10.0]]', 'design.limits=[["loss_percent",2.0]]'
+    little = "pinion.tip_relief_um=1", "wheel.tip_relief_um=1", "sweep.positions=8", "contact.friction=0.1"
+    designed(tmp_path, *loss, *little, percents=(5.0, 100.0))
+    light, heavy = (row for row in BEST.read(tmp_path) if row.variant == 0)
+    assert 0.0 < light.loss_percent < 2.0 and np.isnan(heavy.loss_percent)
+    assert light.resolved_loss_percent == pytest.approx(light.loss_percent, rel=0.05)
+    assert 0.0 < heavy.resolved_loss_percent < 2.0
+
+
+@pytest.mark.parametrize("friction", ["0", "[0.05,0.1]"])
+def test_loss_wants_one_friction_coefficient(friction: str, tmp_path: Path) -> None:
+    """Neither none nor a list; without the loss as a target or limit friction does not matter."""
+    vary = 'design.vary=[["both.tip_relief_um",20.0,30.0,10.0]]', f"contact.friction={friction}"
+    for asked in ('design.targets=["loss_percent"]', 'design.limits=[["loss_percent",0.7]]'):
+        with pytest.raises(SceneError, match=r"contact\.friction: found .*; allowed: one coefficient above 0"):
+            quietly(Design.of(spur_scene(*LONG, *vary, asked), (100.0,)), tmp_path)
+    Design.of(spur_scene(*LONG, *vary), (100.0,)).check()
+
+
+def test_friction_is_part_of_what_is_resumed_with_a_loss(tmp_path: Path) -> None:
+    """Another coefficient is refused where there is a loss, and is of no effect where there is none."""
+    vary = 'design.vary=[["both.tip_relief_um",20.0,30.0,10.0]]', "sweep.positions=4", "design.verified=0"
+    loss = 'design.targets=["loss_percent"]'
+    designed(tmp_path / "with", *vary, loss, "contact.friction=0.1")
+    other = Design.of(spur_scene(*LONG, *vary, loss, "contact.friction=0.05"), (100.0,))
+    with pytest.raises(ArchiveError, match="friction coefficient of the loss"):
+        quietly(other, tmp_path / "with", resume=True)
+    designed(tmp_path / "without", *vary, "contact.friction=0.1")
+    quietly(Design.of(spur_scene(*LONG, *vary, "contact.friction=0.05"), (100.0,)), tmp_path / "without", resume=True)
+
+
+def test_each_of_the_best_has_its_band(tmp_path: Path) -> None:
+    """The band of each variant reaches from below its own transmission error and loss to above them, that of the best
+    one is what design_band.csv has; the scene as it stands, which has no rank, has none."""
+    varying = 'design.vary=[["both.tip_relief_um",20.0,30.0,10.0]]', 'design.tolerances=[["wheel.tip_relief_um",2.0]]'
+    more = 'design.limits=[["loss_percent",0.7]]', "contact.friction=0.1", "sweep.positions=4", "design.verified=2"
+    designed(tmp_path, *varying, *more, "mesh={level='line'}")
+    *ranked, stands = BEST.read(tmp_path)
+    assert [row.rank for row in (*ranked, stands)] == [1, 2, 0]
+    for row in ranked:
+        low, high = row.band_lowest_peak_to_peak_um, row.band_highest_peak_to_peak_um
+        assert low <= row.transmission_error_peak_to_peak_um * (1.0 + 1e-8) and low < high
+        assert row.band_lowest_loss_percent < row.loss_percent < row.band_highest_loss_percent
+    within = [row.loss_percent for row in BAND.read(tmp_path)]
+    assert (min(within), max(within)) == (ranked[0].band_lowest_loss_percent, ranked[0].band_highest_loss_percent)
+    assert np.isnan(stands.band_lowest_peak_to_peak_um) and stands.band_left_out == 0
+
+
 @pytest.mark.parametrize("keys", [1, 2, 3])
 def test_picture_of_so_many_keys(keys: int) -> None:
     """A curve, a map, a cloud; with edges that bear, and with no best one."""
     names = ("pinion.tip_relief_um", "wheel.tip_relief_um", "pinion.lead_crowning_um")[:keys]
     grid = np.stack(np.meshgrid(*([np.arange(4.0)] * keys)), axis=-1).reshape(-1, keys)
     variants = [
-        VariantRow(n, dict(zip(names, row)), 1.0 + row.sum(), 1.0, 900.0, 0.0, ALLOWED if n % 3 else EDGES, "")
+        VariantRow(n, dict(zip(names, row)), 1.0 + row.sum(), 1.0, 900.0, 0.5, 0.0, ALLOWED if n % 3 else EDGES, "")
         for n, row in enumerate(np.concatenate([grid[:1], grid]))
     ]
     nan = float("nan")
     rows = [
-        BestRow(rank, number, torque, 1.0, 0.1, 300.0, 1.0, 1.1, 0.01, 900.0, 9.0, 1.1, 0.1, 300.0, 1.0, 0, *[nan] * 6)
+        BestRow(rank, number, torque, 1.0, 0.1, 300.0, 1.0, 1.1, 0.01, 900.0, 9.0, 0.5, 0.01, 1.1, 0.1, 300.0, 1.0, 0.5,
+                0.01, 0, *[nan] * 8)
         for rank, number in ((1, 2), (0, 0)) for torque in (100.0, 200.0)
     ]
-    for best in (rows, [row for row in rows if row.rank == 0]):
-        section = {"targets": ["transmission_error_peak_to_peak_um"], "limits": [["face_load_factor", 1.3]]}
+    for best, target in (
+        (rows, "transmission_error_peak_to_peak_um"), (rows, "loss_percent"), (rows, "face_load_factor"),
+        ([row for row in rows if row.rank == 0], "loss_percent"),
+    ):
+        section = {"targets": [target], "limits": [["face_load_factor", 1.3]]}
         assert png_of(design_figure, "a pair", section, variants, best)[:4] == b"\x89PNG"

@@ -1,8 +1,9 @@
-"""Tables of `evolvent check` on the sections that commands beyond `evolvent run` read: [dynamics], [transient] and
-[fatigue]. Each table stands where the scene has its section."""
+"""Tables of `evolvent check` on the sections that commands beyond `evolvent run` read: [dynamics], [transient],
+[fatigue] and [design]. Each table stands where the scene has its section."""
 
 from __future__ import annotations
 
+from evolvent.check.design_rows import DEVIATES, VARIES, design_rows, tolerance_rows, varying_rows
 from evolvent.check.text_table import table
 from evolvent.check.transient_rows import STEPS, step_lines, transient_lines
 from evolvent.scene.scene import GEARS, Scene
@@ -11,8 +12,8 @@ from evolvent.strength.fatigue.criterion import criteria_of
 
 
 def planned_tables(scene: Scene) -> list[str]:
-    """Tables on the sections [dynamics], [transient] and [fatigue], one for each that the scene has."""
-    return [*_vibration(scene), *_transient(scene), *_fatigue(scene)]
+    """Tables on the sections [dynamics], [transient], [fatigue] and [design], where the scene has them."""
+    return [*_vibration(scene), *_transient(scene), *_fatigue(scene), *_design(scene)]
 
 
 def _vibration(scene: Scene) -> list[str]:
@@ -40,3 +41,15 @@ def _fatigue(scene: Scene) -> list[str]:
     names = ", ".join(criterion.words for criterion in criteria_of(scene.fatigue.yield_stress_MPa))
     count, deepest = len(scene.fatigue.depths), scene.fatigue.depths[-1]
     return [f"Contact fatigue\n  {count} depths down to {deepest:g} half-widths of the contact: {names}"]
+
+
+def _design(scene: Scene) -> list[str]:
+    """Tables on the variants, on what varies and on tolerances."""
+    if scene.design is None:
+        return []
+    within = tolerance_rows(scene.design)
+    return [
+        table("Design (variants in line contact)", design_rows(scene, scene.design)),
+        table(VARIES[0], varying_rows(scene.design), VARIES[1]),
+        *([table(DEVIATES[0], within, DEVIATES[1])] if within else []),
+    ]

@@ -186,7 +186,7 @@ def _design(scene: Scene) -> object:
     section = scene.design
     assert section is not None
     space = DesignSpace(scene, section)
-    figures = np.array([[[1.0, 1.6, 900.0, 0.5, 0.0]], [[2.0, 1.2, 950.0, 0.5, 0.0]]])
+    figures = np.array([[[1.0, 1.6, 900.0, 0.5, 0.4, 0.0]], [[2.0, 1.2, 950.0, 0.5, 0.8, 0.0]]])
     ranking = Ranking(section, figures)
     everything = section.search, section.samples, section.verified
     return (

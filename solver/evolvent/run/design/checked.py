@@ -51,6 +51,11 @@ class BestRow:
     target nor has a limit, and where edges of tips bear under this torque."""
     loss_percent_error: float
     """Estimated error of it."""
+    transmission_error_first_harmonic_um: float
+    """Amplitude of the first mesh harmonic of the transmission error in line contact; NaN where the peak-to-peak value
+    is."""
+    transmission_error_first_harmonic_um_error: float
+    """Estimated error of it."""
     resolved_peak_to_peak_um: float
     """Peak-to-peak transmission error with the contact resolved; NaN where it was not asked for."""
     resolved_peak_to_peak_um_error: float
@@ -62,6 +67,11 @@ class BestRow:
     resolved_loss_percent: float
     """Friction loss with the contact resolved; NaN where it was not asked for."""
     resolved_loss_percent_error: float
+    """Estimated error of it."""
+    resolved_first_harmonic_um: float
+    """Amplitude of the first mesh harmonic of the transmission error with the contact resolved; NaN where it was not
+    asked for."""
+    resolved_first_harmonic_um_error: float
     """Estimated error of it."""
     band_left_out: int
     """Number of variants within its tolerances of which edges of tips bear, or that cannot be computed: the band is
@@ -81,6 +91,10 @@ class BestRow:
     band_lowest_loss_percent: float
     """Least friction loss of them; NaN where it is neither a target nor has a limit."""
     band_highest_loss_percent: float
+    """Largest one of them."""
+    band_lowest_first_harmonic_um: float
+    """Least amplitude of the first mesh harmonic of them."""
+    band_highest_first_harmonic_um: float
     """Largest one of them."""
 
 
@@ -110,7 +124,7 @@ class Checked:
     def figure(self, name: Figure, torques: int) -> tuple[float, float]:
         """A figure's largest value under all torques, of which there are so many, and its error: of the line contact
         or, where edges bear, of the resolved one."""
-        kind = dict(zip(FIGURES, ("error", "face_load", "pressure", "loss")))[name]
+        kind = dict(zip(FIGURES, ("error", "face_load", "pressure", "loss", "harmonic")))[name]
         for solved in (self.line, self.resolved):
             pairs = solved.figures(torques)[kind]
             if np.isfinite([value for value, _ in pairs]).all():
@@ -123,12 +137,13 @@ class Checked:
         for j, torque in enumerate(torques):
             yield BestRow(
                 self.rank, self.variant, 1e-3 * torque, *line["error"][j], *line["stiffness"][j], *line["face_load"][j],
-                *line["pressure"][j], *line["loss"][j], *resolved["error"][j], *resolved["stiffness"][j],
-                *resolved["loss"][j], self._left_out(j), *self._band(j),
+                *line["pressure"][j], *line["loss"][j], *line["harmonic"][j], *resolved["error"][j],
+                *resolved["stiffness"][j], *resolved["loss"][j], *resolved["harmonic"][j], self._left_out(j),
+                *self._band(j),
             )
 
     def _known(self, torque: int) -> Floats:
-        """(b', 4) figures of variants within the tolerances, without those of which edges bear under a torque."""
+        """(b', 5) figures of variants within the tolerances, without those of which edges bear under a torque."""
         figures = np.zeros((0, ON_EDGES + 1)) if self.band is None else self.band.figures[:, torque]
         return np.asarray(figures[figures[:, ON_EDGES] <= MOST_ON_EDGES][:, [*COLUMN.values()]])
 

@@ -17,16 +17,16 @@ from evolvent.run.design.design_space import DesignSpace
 from evolvent.run.design.evaluation import Variants
 from evolvent.run.design.ranking import SAME, Ranking
 from evolvent.run.design.tables import ALLOWED, DESIGN, EDGES, FRONT, VariantRow
-from evolvent.scene.schema.design import FIGURES, Figure, keys_of_both
+from evolvent.scene.schema.design import FIGURES, HARMONIC, Figure, keys_of_both
 from evolvent_meshes.arrays import Floats
 
 BEST_SCENE = "best.toml"
 """Scene with the modifications of the best variant."""
-TARGETS = SceneValue("scene.toml", "design.targets")
-"""Targets of the scene."""
+SECTION = SceneValue("scene.toml", "design")
+"""Targets and limits."""
 BAND_ENDS: Mapping[Figure, str] = MappingProxyType(dict(zip(FIGURES, (
     "band_highest_peak_to_peak_um", "band_highest_face_load_factor", "band_highest_pressure_MPa",
-    "band_highest_loss_percent",
+    "band_highest_loss_percent", "band_highest_first_harmonic_um",
 ))))
 """Figure -> column with its largest value within the tolerances."""
 
@@ -40,16 +40,16 @@ def design_lines(folder: Path) -> Iterator[str]:
     best = [row for row in rows if row.rank == 1]
     if best:
         yield f"best: variant {best[0].variant}, {modifications(variants[best[0].variant], variants)}"
-    yield from _most_robust(rows, TARGETS.read(folder))
+    section = SECTION.read(folder)
+    yield from _most_robust(rows, section["targets"][0])
+    has_harmonic = HARMONIC in (*section["targets"], *dict(section["limits"]))
     for row in best:
         before = next(each for each in rows if each.variant == 0 and each.torque_Nm == row.torque_Nm)
-        yield f"{row.torque_Nm:.4g} N·m: transmission error {'; '.join(_figures(row, before))}"
+        yield f"{row.torque_Nm:.4g} N·m: transmission error {'; '.join(_figures(row, before, has_harmonic))}"
 
 
-def _most_robust(rows: Sequence[BestRow], targets: Sequence[Figure] | None) -> Iterator[str]:
-    """A sentence on another of the best variants whose first target is smaller within the tolerances. targets: of the
-    scene; None where it has those by default."""
-    target = targets[0] if targets else FIGURES[0]
+def _most_robust(rows: Sequence[BestRow], target: Figure) -> Iterator[str]:
+    """A sentence on another of the best variants whose first target is smaller within the tolerances."""
     ranks = sorted({row.rank for row in rows if row.rank})
     groups = {rank: [row for row in rows if row.rank == rank] for rank in ranks}
     worst = {rank: _largest_within(group, BAND_ENDS[target]) for rank, group in groups.items()}
@@ -77,8 +77,9 @@ def modifications(row: VariantRow, variants: Sequence[VariantRow]) -> str:
     return ", ".join(f"{name} = {row.values[name]:.6g}" for name in varying or row.values)
 
 
-def _figures(row: BestRow, before: BestRow) -> Iterator[str]:
-    """Figures of a variant under a torque. before: those of the scene as it stands."""
+def _figures(row: BestRow, before: BestRow, has_harmonic: bool) -> Iterator[str]:
+    """Figures of a variant under a torque. before: those of the scene as it stands. has_harmonic: whether the first
+    harmonic is asked for."""
     line = plus_minus(row.transmission_error_peak_to_peak_um, row.transmission_error_peak_to_peak_um_error, 2)
     resolved = plus_minus(row.resolved_peak_to_peak_um, row.resolved_peak_to_peak_um_error, 2)
     if math.isnan(row.transmission_error_peak_to_peak_um):
@@ -89,12 +90,23 @@ def _figures(row: BestRow, before: BestRow) -> Iterator[str]:
             yield f"resolved {resolved} µm"
     if before.variant != row.variant:
         yield _before(before)
+    if has_harmonic:
+        yield from _harmonic(row)
     if not math.isnan(row.face_load_factor):
         yield f"K_Hβ {plus_minus(row.face_load_factor, row.face_load_factor_error, 2)}"
     if not math.isnan(row.largest_pressure_MPa):
         yield f"p_0 {plus_minus(row.largest_pressure_MPa, row.largest_pressure_MPa_error, 0)} MPa"
     yield from _loss(row)
     yield from _band(row)
+
+
+def _harmonic(row: BestRow) -> Iterator[str]:
+    """Amplitude of the first mesh harmonic, where it is known."""
+    own = row.transmission_error_first_harmonic_um, row.transmission_error_first_harmonic_um_error
+    resolved = row.resolved_first_harmonic_um, row.resolved_first_harmonic_um_error
+    for words, pair in (("first harmonic", own), ("first harmonic resolved", resolved)):
+        if not math.isnan(pair[0]):
+            yield f"{words} {plus_minus(*pair, 3)} µm"
 
 
 def _loss(row: BestRow) -> Iterator[str]:

@@ -16,7 +16,7 @@ from evolvent.results.drawing.labels import UNITS, ending, label
 from evolvent.results.drawing.style import FAINT, HOLLOW, INK, PINION, PRESSURE_MAP, WHEEL, foot, sheet
 from evolvent.run.design.checked import BestRow
 from evolvent.run.design.tables import ALLOWED, BEYOND, EDGES, FRONT, VariantRow
-from evolvent.scene.schema.design import FIGURES, LOSS
+from evolvent.scene.schema.design import FIGURES, HARMONIC, LOSS
 from evolvent_meshes.arrays import Floats
 
 BEFORE, AFTER = WHEEL, PINION
@@ -25,7 +25,9 @@ ASIDE = 0.008
 LEAST_HEIGHT = 0.5
 """Ratio of the smallest and the largest value from which on an axis does not begin at zero."""
 TARGET = FIGURES[0]
-RESOLVED: Mapping[str, str] = MappingProxyType({TARGET: "resolved_peak_to_peak_um", LOSS: "resolved_loss_percent"})
+RESOLVED: Mapping[str, str] = MappingProxyType({
+    TARGET: "resolved_peak_to_peak_um", LOSS: "resolved_loss_percent", HARMONIC: "resolved_first_harmonic_um",
+})
 """Figure -> column of the resolved contact, of those that have one."""
 WORDS = "transmission error, peak to peak [µm]"
 

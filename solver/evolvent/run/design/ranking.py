@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.gears.line.line_gears import MOST_ON_EDGES
-from evolvent.run.design.variant_mesh import FACE_LOAD, LOST, ON_EDGES, PEAK_TO_PEAK, PRESSURE
+from evolvent.run.design.variant_mesh import FACE_LOAD, FIRST_HARMONIC, LOST, ON_EDGES, PEAK_TO_PEAK, PRESSURE
 from evolvent.scene.schema.design import FIGURES, DesignSection, Figure
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
-COLUMN = dict(zip(FIGURES, (PEAK_TO_PEAK, FACE_LOAD, PRESSURE, LOST)))
+COLUMN = dict(zip(FIGURES, (PEAK_TO_PEAK, FACE_LOAD, PRESSURE, LOST, FIRST_HARMONIC)))
 """Name of a figure -> its column."""
 COMPETING = 0.2
 """Largest part of the load that edges of tips may bear of a variant that competes, where its contact is resolved before

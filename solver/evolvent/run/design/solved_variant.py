@@ -77,7 +77,7 @@ class SolvedVariant:
     def figures(self, count: int) -> Mapping[str, Pairs]:
         """Figures with their errors under `count` torques, of which the heaviest ones may have none."""
         unknown: Pairs = [(math.nan, math.nan)] * count
-        found = dict.fromkeys(("error", "stiffness", "face_load", "pressure"), unknown)
+        found = dict.fromkeys(("error", "harmonic", "stiffness", "face_load", "pressure"), unknown)
         if self.excitation is not None:
             found |= {name: [*own, *unknown[len(own) :]] for name, own in _of_excitation(self.excitation).items()}
         return {**found, "loss": unknown if self.loss is None else self.loss.percent}
@@ -137,6 +137,9 @@ def _of_excitation(solved: SolvedExcitation) -> Mapping[str, Pairs]:
     curves, facts = list(pitch_curves(excitation, companion)), line_facts(excitation, companion)
     return {
         "error": [(float(np.ptp(each[LOADED].values)), each[LOADED].peak_to_peak_error) for each in curves],
+        "harmonic": [
+            (float(each[LOADED].harmonics[0][0]), float(each[LOADED].amplitude_errors[0])) for each in curves
+        ],
         "stiffness": [(float(np.mean(each[TANGENT].values)), each[TANGENT].mean_error) for each in curves],
         "face_load": list(zip(facts.face_load_factor.tolist(), facts.face_load_factor_error.tolist())),
         "pressure": list(zip(facts.largest_pressure_MPa.tolist(), facts.largest_pressure_MPa_error.tolist())),

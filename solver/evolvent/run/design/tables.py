@@ -34,6 +34,9 @@ class VariantRow:
     loss_percent: float
     """Friction loss over the input of the pitch, the largest under all torques; NaN where it is neither a target nor
     has a limit."""
+    transmission_error_first_harmonic_um: float
+    """Amplitude of the first mesh harmonic of the transmission error, the largest under all torques; NaN where edges of
+    tips bear under one."""
     on_edges_percent: float
     """Largest part of the load that edges of tips bear. Above 1 % the contact is no line contact, and the variant has
     no figures."""
@@ -57,8 +60,8 @@ def variant_rows(section: DesignSection, keys: Sequence[str], variants: Variants
         status = FAILED if variants.reasons[number] else EDGES if edges[number] else BEYOND
         if allowed[number]:
             status = FRONT if front[number] and len(section.targets) > 1 else ALLOWED
-        peak_to_peak, factor, pressure, loss = map(float, found)
+        peak_to_peak, factor, pressure, loss, harmonic = map(float, found)
         yield VariantRow(
-            number, dict(zip(keys, map(float, values))), peak_to_peak, factor, pressure, loss,
+            number, dict(zip(keys, map(float, values))), peak_to_peak, factor, pressure, loss, harmonic,
             100.0 * float(ranking.on_edges[number]), status, variants.reasons[number],
         )

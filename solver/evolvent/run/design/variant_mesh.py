@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.dynamics.excitation.harmonics import mesh_harmonics
 from evolvent.dynamics.excitation.line_mesh import LineFigures, figures_at
 from evolvent.dynamics.excitation.loaded_mesh import COLUMNS
 from evolvent.gears.gear_model import GearModel
@@ -20,11 +21,12 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
-PEAK_TO_PEAK, FACE_LOAD, PRESSURE, LOST, ON_EDGES = range(5)
+PEAK_TO_PEAK, FACE_LOAD, PRESSURE, LOST, FIRST_HARMONIC, ON_EDGES = range(6)
 """Columns of the figures of a variant under a torque: peak-to-peak transmission error [µm], K_Hβ (NaN in the plane),
-largest p_0 away from edges and kinks [MPa], friction loss [%] (NaN where it is not asked for), and the largest part of
-the load that edges of tips bear. All but the loss are without friction."""
-FIGURES = 5
+largest p_0 away from edges and kinks [MPa], friction loss [%] (NaN where it is not asked for), amplitude of the first
+mesh harmonic of the transmission error [µm], and the largest part of the load that edges of tips bear. All but the loss
+are without friction."""
+FIGURES = 6
 """Number of these columns."""
 
 
@@ -63,9 +65,11 @@ class VariantMesh:
             return np.full((len(self.torques), FIGURES), np.nan), str(error)
         line = LineFigures.of(rows[..., COLUMNS:])
         pressure = np.where(line.largest_pressure_MPa > 0.0, line.largest_pressure_MPa, np.nan)
-        peak_to_peak = 1e3 * np.ptp(rows[..., 0], axis=0)
+        errors = 1e3 * rows[..., 0]
+        peak_to_peak = np.ptp(errors, axis=0)
+        harmonic = [mesh_harmonics(each, 1)[0][0] for each in errors.T]
         factor = np.where(line.is_plane, np.nan, line.face_load_factor)
-        return np.column_stack([peak_to_peak, factor, pressure, loss, line.on_edges.max(axis=0)]), ""
+        return np.column_stack([peak_to_peak, factor, pressure, loss, harmonic, line.on_edges.max(axis=0)]), ""
 
     def _loss_percent(self, gears: LineGears, positions: Sequence[LinePosition]) -> Floats:
         """Friction loss (m,) over the input of the pitch under each torque [%]; NaN without friction. Raises

@@ -18,11 +18,11 @@ from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.results.tables.table import SCENE_TITLE, Filled, SceneValue
+from evolvent.results.tables.table import SCENE_TITLE, Filled
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.design.checked import BEST, Checked, ranked
-from evolvent.run.design.design_lines import BEST_SCENE, design_lines, design_warnings
+from evolvent.run.design.design_lines import BEST_SCENE, SECTION, design_lines, design_warnings
 from evolvent.run.design.design_space import DesignSpace
 from evolvent.run.design.evaluation import KEPT, Evaluation, Variants, design_store, kept_variants, no_variants
 from evolvent.run.design.ranking import Ranking
@@ -42,8 +42,6 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.modifications.modifications import OVER_FACE
 from evolvent_meshes.gears.pair import GearPair
 
-SECTION = SceneValue("scene.toml", "design")
-"""Targets and limits, as the picture needs them."""
 PICTURE = TablePicture("design.png", (SCENE_TITLE, SECTION, DESIGN, BEST), "evolvent.run.design.figures:design_figure")
 
 

@@ -17,11 +17,16 @@ MODIFICATIONS = tuple(name for name, field in FlankKeys.model_fields.items() if 
 """Keys of [pinion] and [wheel] that may vary."""
 MISALIGNMENT = f"{PAIR}.misalignment_um"
 """Key that may deviate, but is nobody's choice."""
-Figure = Literal["transmission_error_peak_to_peak_um", "face_load_factor", "largest_pressure_MPa", "loss_percent"]
+Figure = Literal[
+    "transmission_error_peak_to_peak_um", "face_load_factor", "largest_pressure_MPa", "loss_percent",
+    "transmission_error_first_harmonic_um",
+]
 FIGURES: tuple[Figure, ...] = get_args(Figure)
 """Figures of a variant that can be targets and have limits."""
 LOSS: Figure = "loss_percent"
 """Friction loss over the input of the pitch: computed where it is a target or has a limit."""
+HARMONIC: Figure = "transmission_error_first_harmonic_um"
+"""Amplitude of the first mesh harmonic of the transmission error."""
 ROUNDING = 1e-6
 """Part of a range by which its steps may miss its end."""
 CORNERS = 5

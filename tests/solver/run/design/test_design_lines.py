@@ -13,17 +13,17 @@ from evolvent.run.design.design_lines import design_lines
 from evolvent.run.design.tables import ALLOWED, DESIGN, VariantRow
 
 NAN = float("nan")
-BARE = BestRow(1, 1, 100.0, 1.0, 0.1, 300.0, 1.0, NAN, NAN, 900.0, 9.0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, 0,
-               0.9, 1.5, NAN, NAN, 890.0, 910.0, NAN, NAN)
+BARE = BestRow(1, 1, 100.0, 1.0, 0.1, 300.0, 1.0, NAN, NAN, 900.0, 9.0, NAN, NAN, 0.4, 0.02, NAN, NAN, NAN, NAN, NAN,
+               NAN, NAN, NAN, 0, 0.9, 1.5, NAN, NAN, 890.0, 910.0, NAN, NAN, 0.3, 0.6)
 """The best variant: a transmission error of 1 µm, up to 1.5 µm within its tolerances."""
 
 
 def told(folder: Path, *rows: BestRow, target: str = "transmission_error_peak_to_peak_um") -> list[str]:
     """Lines on these rows. The scene as it stands is variant 0."""
     values = {"pinion.tip_relief_um": 0.0}
-    variants = [VariantRow(n, values, 1.0, NAN, 900.0, NAN, 0.0, ALLOWED, "") for n in range(3)]
+    variants = [VariantRow(n, values, 1.0, NAN, 900.0, NAN, 0.4, 0.0, ALLOWED, "") for n in range(3)]
     files = RunFolder(folder)
-    files.write_text("scene.toml", f'[design]\ntargets = ["{target}"]\n')
+    files.write_text("scene.toml", f'[design]\ntargets = ["{target}"]\nlimits = []\n')
     DESIGN.write(files, variants)
     BEST.write(files, [*rows, replace(BARE, rank=0, variant=0)])
     return list(design_lines(folder))
@@ -46,6 +46,12 @@ def test_best_one_whose_band_is_not_known(tmp_path: Path) -> None:
     second = replace(BARE, rank=2, variant=2)
     (line,) = (line for line in told(tmp_path, replace(BARE, band_left_out=1), second) if "of rank 2" in line)
     assert line.endswith("up to 1.5, of the best one not known, as edges of tips bear")
+
+
+def test_first_harmonic_is_told_where_it_is_asked_for(tmp_path: Path) -> None:
+    """As a target; else it is in the table alone."""
+    asked = told(tmp_path / "asked", BARE, target="transmission_error_first_harmonic_um")[2]
+    assert "first harmonic 0.400 ± 0.020 µm" in asked and "harmonic" not in told(tmp_path / "not", BARE)[2]
 
 
 def test_loss_stands_behind_its_torque(tmp_path: Path) -> None:

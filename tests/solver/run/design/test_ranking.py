@@ -8,7 +8,7 @@ from evolvent.run.design.ranking import Ranking
 from evolvent.scene.schema.design import FIGURES, DesignSection, Vary
 from evolvent_meshes.arrays import Floats
 
-ERROR, FACTOR, PRESSURE, LOSS = FIGURES
+ERROR, FACTOR, PRESSURE, LOSS, HARMONIC = FIGURES
 VARY = (Vary("both.tip_relief_um", 0.0, 10.0, 1.0),)
 
 
@@ -17,13 +17,16 @@ def section(**given: object) -> DesignSection:
 
 
 def figures(*rows: tuple[float, float, float, float]) -> Floats:
-    """Figures under one torque, without a loss."""
-    return np.insert(np.array(rows), 3, np.nan, axis=1)[:, None]
+    """Figures under one torque, without a loss; the first harmonic is half of the peak-to-peak value."""
+    given = np.array(rows)
+    loss, harmonic = np.full((len(rows), 1), np.nan), 0.5 * given[:, :1]
+    return np.hstack([given[:, :3], loss, harmonic, given[:, 3:]])[:, None]
 
 
 def test_the_largest_value_of_all_torques_counts() -> None:
     """1 and 3 µm under two torques are worse than 2 and 2."""
-    found = np.array([[[1.0, 1.0, 900.0, 0.5, 0.0], [3.0, 1.0, 900.0, 0.5, 0.0]], [[2.0, 1.0, 900.0, 0.5, 0.0]] * 2])
+    light, heavy, middle = (figures((error, 1.0, 900.0, 0.0))[0] for error in (1.0, 3.0, 2.0))
+    found = np.array([np.concatenate([light, heavy]), np.concatenate([middle, middle])])
     ranking = Ranking(section(), found)
     assert ranking.largest(ERROR).tolist() == [3.0, 2.0] and ranking.best(1).tolist() == [1]
 
@@ -85,6 +88,13 @@ def test_loss_as_target_and_as_limit() -> None:
     assert Ranking(section(targets=[LOSS]), rows).best(9).tolist() == [1, 0, 2]
     limited = Ranking(section(limits=[[LOSS, 0.7]]), rows)
     assert limited.is_allowed.tolist() == [True, True, False, False] and limited.best(1).tolist() == [0]
+
+
+def test_first_harmonic_as_limit() -> None:
+    """Half of 1 µm is allowed, half of 3 µm is not; with edges that bear 5 % it does not compete by estimates."""
+    rows = figures((1.0, 1.0, 900.0, 0.0), (3.0, 1.0, 900.0, 0.0), (0.5, 1.0, 900.0, 0.05))
+    ranking = Ranking(section(limits=[[HARMONIC, 1.0]]), rows, True)
+    assert ranking.is_allowed.tolist() == [True, False, False]
 
 
 def test_variants_within_the_error_bar_of_the_best_one() -> None:

@@ -11,7 +11,7 @@ import pytest
 from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.run.design.design_space import DesignSpace
-from evolvent.run.design.variant_mesh import LOST, ON_EDGES, PEAK_TO_PEAK, PRESSURE, VariantMesh
+from evolvent.run.design.variant_mesh import FIRST_HARMONIC, LOST, ON_EDGES, PEAK_TO_PEAK, PRESSURE, VariantMesh
 from evolvent.run.kinds.losses import LOSSES, Losses
 from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Floats
@@ -39,13 +39,16 @@ def mesh_of(scene: Scene, friction: float = 0.0) -> VariantMesh:
 
 def test_a_variant_is_what_its_own_scene_is() -> None:
     """A relief of 20 µm on gears that were condensed without: the figures of a scene that has it, whose gears are
-    condensed for it."""
+    condensed for it. The first harmonic of 12 positions is |Σ e_k exp(2πi k/12)| / 6."""
     found, reason = mesh_of(spur_scene(*SETTINGS)).figures(np.array([20.0, 20.0]))
     own = loaded_mesh(
         model_of(spur_scene(*SETTINGS, "pinion.tip_relief_um=20", "wheel.tip_relief_um=20")), TORQUES, ANGLES
     )
     assert own.line is not None and reason == ""
     assert found[:, PEAK_TO_PEAK] == pytest.approx(1e3 * np.ptp(own.errors, axis=0), rel=1e-9)
+    turning = np.exp(2j * np.pi * np.arange(12) / 12.0)
+    amplitude = 1e3 * np.abs(turning @ own.errors) / 6.0
+    assert found[:, FIRST_HARMONIC] == pytest.approx(amplitude, rel=1e-9)
     assert found[:, PRESSURE] == pytest.approx(own.line.largest_pressure_MPa, rel=1e-9)
     assert found[:, ON_EDGES] == pytest.approx(own.line.on_edges.max(axis=0), abs=1e-12)
 

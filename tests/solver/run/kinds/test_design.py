@@ -77,8 +77,10 @@ def test_resolved_figures_are_those_of_an_excitation(long_relief: Path, tmp_path
     (row,) = (each for each in BEST.read(long_relief) if each.rank == 1)
     lines = (tmp_path / "harmonics.csv").read_text(encoding="utf-8").splitlines()
     cells = [dict(zip(lines[0].split(","), line.split(","))) for line in lines[1:]]
-    error = next(float(each["peak_to_peak"]) for each in cells if each["quantity"] == "transmission_error_um")
-    assert row.resolved_peak_to_peak_um == pytest.approx(error, rel=1e-6)
+    error = next(each for each in cells if each["quantity"] == "transmission_error_um")
+    assert row.resolved_peak_to_peak_um == pytest.approx(float(error["peak_to_peak"]), rel=1e-6)
+    assert error["harmonic"] == "1"
+    assert row.resolved_first_harmonic_um == pytest.approx(float(error["amplitude"]), rel=1e-6)
 
 
 def test_resumed_with_other_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -209,17 +211,20 @@ def test_picture_of_so_many_keys(keys: int) -> None:
     names = ("pinion.tip_relief_um", "wheel.tip_relief_um", "pinion.lead_crowning_um")[:keys]
     grid = np.stack(np.meshgrid(*([np.arange(4.0)] * keys)), axis=-1).reshape(-1, keys)
     variants = [
-        VariantRow(n, dict(zip(names, row)), 1.0 + row.sum(), 1.0, 900.0, 0.5, 0.0, ALLOWED if n % 3 else EDGES, "")
+        VariantRow(
+            n, dict(zip(names, row)), 1.0 + row.sum(), 1.0, 900.0, 0.5, 0.4, 0.0, ALLOWED if n % 3 else EDGES, ""
+        )
         for n, row in enumerate(np.concatenate([grid[:1], grid]))
     ]
     nan = float("nan")
     rows = [
-        BestRow(rank, number, torque, 1.0, 0.1, 300.0, 1.0, 1.1, 0.01, 900.0, 9.0, 0.5, 0.01, 1.1, 0.1, 300.0, 1.0, 0.5,
-                0.01, 0, *[nan] * 8)
+        BestRow(rank, number, torque, 1.0, 0.1, 300.0, 1.0, 1.1, 0.01, 900.0, 9.0, 0.5, 0.01, 0.4, 0.01, 1.1, 0.1,
+                300.0, 1.0, 0.5, 0.01, 0.4, 0.01, 0, *[nan] * 10)
         for rank, number in ((1, 2), (0, 0)) for torque in (100.0, 200.0)
     ]
     for best, target in (
         (rows, "transmission_error_peak_to_peak_um"), (rows, "loss_percent"), (rows, "face_load_factor"),
+        (rows, "transmission_error_first_harmonic_um"),
         ([row for row in rows if row.rank == 0], "loss_percent"),
     ):
         section = {"targets": [target], "limits": [["face_load_factor", 1.3]]}

@@ -29,7 +29,7 @@ class TorqueCourse:
 
 @dataclass(frozen=True)
 class GearLoad:
-    """A torque on one gear; the other one is driven."""
+    """A torque on one gear; the rotation of the other one is prescribed."""
 
     torque: float
     """Torque [N·mm; per mm of face width in 2D]."""
@@ -37,6 +37,9 @@ class GearLoad:
     """Gear on which the torque acts."""
     course: TorqueCourse | None = None
     """Variation of the torque over an angular pitch; None: constant."""
+    driving: Member = Member.PINION
+    """Gear that drives the other one: the pinion turns counter-clockwise where it drives, clockwise where the wheel
+    drives on the same flanks."""
 
     def at(self, angle: float) -> float:
         """The torque at a pinion rotation [rad]; [N·mm; per mm of face width in 2D]."""
@@ -45,4 +48,5 @@ class GearLoad:
 
 def gear_load(problem: GearProblem) -> GearLoad:
     """The torque, per mm of face width where the problem is plane."""
-    return GearLoad(problem.torque / (problem.pair.face_width if problem.is_plane else 1.0), problem.torque_on)
+    torque = problem.torque / (problem.pair.face_width if problem.is_plane else 1.0)
+    return GearLoad(torque, problem.torque_on, driving=problem.driving)

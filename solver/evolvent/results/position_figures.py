@@ -16,7 +16,7 @@ def transmission_error_um(_: RunData, solved: SolvedPosition) -> float:
 
 def loss_percent(_: RunData, solved: SolvedPosition) -> float:
     """Friction power over input power [%]."""
-    return 100.0 * solved.result.friction_loss / solved.result.torques[0]
+    return 100.0 * solved.result.friction_loss / solved.result.input_power
 
 
 def pitch_loss_percent(lost: ArrayLike, given: ArrayLike) -> Floats:

@@ -1,15 +1,15 @@
 """Friction of a line contact in the direction of sliding, which is known: it reverses at the pitch point.
 
 The flanks of a pair slide in the transverse section, along the profile, by (1 + 1/u) ξ per radian of the pinion
-(ISO 21771:2007), ξ the roll distance from the pitch point. The pinion drives: behind the pitch point, ξ > 0, friction
-acts towards the tips on both gears, before it towards the roots. With a load q per length and Coulomb's μ it is μ q,
-and the torques of pinion and wheel over their base radii are
+(ISO 21771:2007), ξ the roll distance from the pitch point. Where the pinion drives, friction acts towards the tips on
+both gears at ξ > 0, towards the roots at ξ < 0; where the wheel drives, the other way round. With a load q per length
+and Coulomb's μ it is μ q, and the torques of pinion and wheel over their base radii are
 
     Σ_j q_j (H_j + μ M_1j),   Σ_j q_j (H_j + μ M_2j),      M_kj = ∫ h_j d (ρ_k / r_bk) ds
 
 with the hats h_j of `Stations`, the direction d of −1 or 1 and the roll lengths of the contact on both gears,
-ρ_1 = r_b1 tan α_wt + ξ and ρ_2 = r_b2 tan α_wt − ξ. Their powers differ by that of friction, μ ∫ q |ξ| (1 + 1/u) ds, at
-each position.
+ρ_1 = r_b1 tan α_wt + ξ and ρ_2 = r_b2 tan α_wt − ξ. The driving gear's power exceeds the other one's by that of
+friction, μ ∫ q |ξ| (1 + 1/u) ds, at each position.
 """
 
 from __future__ import annotations
@@ -43,23 +43,27 @@ class LineFriction:
     """(m,) sliding velocity per radian of the pinion under each hat, times its integral [mm²/rad]."""
 
 
-def sliding_direction(pair: GearPair, stations: Stations) -> Floats:
+def sliding_direction(pair: GearPair, stations: Stations, driving: Member) -> Floats:
     """Direction (p,) of friction at the points of the stations, see `direction_at`."""
-    return direction_at(pair, stations.roll_distance, np.asarray(stations.hats.sum(axis=1)).ravel())
+    return direction_at(pair, stations.roll_distance, np.asarray(stations.hats.sum(axis=1)).ravel(), driving)
 
 
-def direction_at(pair: GearPair, roll_distance: Floats, length: Floats) -> Floats:
+def direction_at(pair: GearPair, roll_distance: Floats, length: Floats, driving: Member) -> Floats:
     """Direction (p,) of friction at roll distances (p,) [mm]: 1 towards the tips of both gears, −1 towards their roots.
-    A point stands for a `length` (p,) of the line [mm]; where the pitch point lies in it, this is the mean."""
-    ξ, least = roll_distance, AT_PITCH_POINT * pair.pinion.normal_module
+    A point stands for a `length` (p,) of the line [mm]; where the pitch point lies in it, this is the mean. driving:
+    the gear that drives."""
+    ξ, least = driving.sign * roll_distance, AT_PITCH_POINT * pair.pinion.normal_module
     half = np.maximum(0.5 * math.sin(pair.pinion.base_helix_angle) * length, least)
     return np.asarray(np.where((half > least) & (np.abs(ξ) < half), ξ / half, np.where(ξ > least, 1.0, -1.0)))
 
 
-def line_friction(pair: GearPair, stations: Stations, direction: Floats, compliance: Floats) -> LineFriction:
-    """Friction at a position. direction: (p,) of `sliding_direction`. compliance: (m, m) of `friction_compliance`."""
+def line_friction(
+    pair: GearPair, stations: Stations, direction: Floats, compliance: Floats, driving: Member
+) -> LineFriction:
+    """Friction at a position. direction: (p,) of `sliding_direction`. compliance: (m, m) of `friction_compliance`.
+    driving: the gear that drives."""
     ξ, hats = stations.roll_distance, stations.hats
     rolls = [pair.pitch_point_roll_lengths[gear] + gear.sign * ξ for gear in Member]
     pinion, wheel = (np.asarray(hats.T @ (direction * ρ)) / gear.base_radius for ρ, gear in zip(rolls, pair.gears))
-    sliding = np.asarray(hats.T @ (direction * ξ)) * (1.0 + 1.0 / pair.ratio)
+    sliding = driving.sign * np.asarray(hats.T @ (direction * ξ)) * (1.0 + 1.0 / pair.ratio)
     return LineFriction(direction, compliance, (pinion, wheel), sliding)

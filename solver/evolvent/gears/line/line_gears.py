@@ -129,13 +129,16 @@ class LineGears:
     """Gear that turns under its torque."""
     least_half_width: float = 0.0
     """Least half-width w of the half-ellipse away from the ends of flanks [mm]."""
+    driving: Member = Member.PINION
+    """Gear that drives."""
 
     @staticmethod
     def of(model: GearModel, friction: bool = False) -> LineGears:
         """The gears of a model that was condensed for line contact. friction: whether positions are to have some."""
         pinion, wheel = (FlankCompliance.of(body, friction) for body in model.bodies)
-        materials = model.bodies[0].material, model.bodies[1].material
-        return LineGears(RigidFlanks(model.pair, model.charts), (pinion, wheel), materials, model.load.on)
+        materials, load = (model.bodies[0].material, model.bodies[1].material), model.load
+        flanks = RigidFlanks(model.pair, model.charts)
+        return LineGears(flanks, (pinion, wheel), materials, load.on, driving=load.driving)
 
     @property
     def pair(self) -> GearPair:
@@ -197,9 +200,9 @@ class LineGears:
         """Friction at a position; None where the gears were prepared without. shift, width: of `line_compliance`."""
         if self.gears[0].by_friction is None:
             return None
-        direction = sliding_direction(self.pair, stations)
+        direction = sliding_direction(self.pair, stations, self.driving)
         compliance = friction_compliance(self.pair, self.gears, stations, shift, width, direction)
-        return line_friction(self.pair, stations, direction, compliance)
+        return line_friction(self.pair, stations, direction, compliance, self.driving)
 
     def _to_tip(self, stations: Stations, shift: Floats) -> Floats:
         """Distances (p,) from the nearest edge of a tip [mm]. shift: (p,) as of `LineGap`."""

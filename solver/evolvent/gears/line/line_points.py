@@ -16,6 +16,7 @@ from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.line.line_friction import direction_at
 from evolvent.gears.line.line_result import LineResult
 from evolvent_meshes.arrays import Bools, Floats, Ints
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 PARTS = 3
@@ -44,9 +45,9 @@ class _Places:
     """Whether the place bears on the edge of a tip or near to it."""
 
 
-def line_points(pair: GearPair, result: LineResult, heights: Floats | None) -> ContactPoints:
+def line_points(pair: GearPair, result: LineResult, heights: Floats | None, driving: Member) -> ContactPoints:
     """The contact of a position. heights: of the ends of the layers of the pinion's mesh (l + 1,) [mm]; None in the
-    plane."""
+    plane. driving: the gear that drives."""
     teeth = list(_places(result, heights))
     at = _Places(*(np.concatenate([getattr(each, f.name) for each in teeth]) for f in fields(_Places)))
     θ = np.arange(1, ACROSS + 1) * np.pi / (ACROSS + 1)
@@ -55,7 +56,7 @@ def line_points(pair: GearPair, result: LineResult, heights: Floats | None) -> C
     weights = (half * at.length)[:, None] * (np.pi / (ACROSS + 1) * np.sin(θ))
     across = (at.shift[:, None] + half[:, None] * np.cos(θ)).ravel()
     ξ = pair.roll_distance(result.position.stations.angle, at.tooth, at.z)
-    direction = direction_at(pair, ξ, at.length)
+    direction = direction_at(pair, ξ, at.length, driving)
     columns = 1 if result.friction == 0.0 else 2 if heights is None else 3
     traction, rate = np.zeros((pressure.size, columns)), np.zeros((pressure.size, 2 if heights is None else 3))
     sliding = np.repeat((1.0 + 1.0 / pair.ratio) * ξ, ACROSS)

@@ -42,7 +42,7 @@ def position_of(
     turned = stand.turned(gears.free, result.equilibrium.approach / pair.gears[gears.free].base_radius)
     pinion, wheel = (each * gear.base_radius for each, gear in zip(result.forces, pair.gears))
     heights = None if gears.spacing is None else gears.gears[0].heights[::2]
-    contact = line_points(pair, result, heights)
+    contact = line_points(pair, result, heights, gears.driving)
     loaded = [loaded_nodes(gears, member, result) for member in Member]
     return PositionResult(
         stand=turned,
@@ -61,6 +61,7 @@ def position_of(
         pinion_forces=loaded[0].forces,
         wheel_forces=loaded[1].forces,
         seconds=seconds,
+        driving=gears.driving,
     )
 
 

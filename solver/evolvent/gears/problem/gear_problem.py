@@ -94,7 +94,7 @@ class GearOptions:
 
 @dataclass(frozen=True, eq=False)
 class GearProblem:
-    """A pinion that drives a wheel under a constant torque. Raises InputError.
+    """A gear pair under a constant torque; by default the pinion drives. Raises InputError.
 
     Examples:
         >>> from evolvent.gears import GearPair, GearParameters
@@ -128,6 +128,9 @@ class GearProblem:
     lighter `torque` has elements too long for its pressures, which an excitation can do without. Up to the heaviest all
     problems have the same sectors and, on flanks with levels, so many of the same levels as each needs:
     `evolvent.gears.gear_model.condensed_gears` condenses them once."""
+    driving: Member = Member.PINION
+    """Gear that drives the other one. The flanks that bear are the same; where the wheel drives, both gears turn the
+    other way round, and friction acts in the opposite direction."""
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, GearPair, "write GearPair(pinion, wheel, centre_distance=...)")
@@ -138,9 +141,10 @@ class GearProblem:
         object.__setattr__(self, "flanks", tuple(self._checked_flank(gear) for gear in Member))
         instance("options", self.options, GearOptions, "write GearOptions(in_space=True), for example")
         self._check_levels()
-        remedy = "give it in N·mm and without a sign: the pinion drives"
+        remedy = "give it in N·mm and without a sign: `driving` is the gear that drives"
         number("torque", self.torque, "a finite number > 0 [N·mm]", remedy, lambda T: T > 0.0)
         one_of("torque_on", self.torque_on, tuple(Member))
+        one_of("driving", self.driving, tuple(Member))
         lightest, heaviest = self._served
         if not (0.0 < lightest <= heaviest and self.torque <= heaviest):
             remedy = "give the lightest and the heaviest torque that the meshes serve"

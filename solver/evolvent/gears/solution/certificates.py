@@ -36,7 +36,7 @@ def balance_error(result: PositionResult) -> float:
     Stored power is no error by itself: deflected flanks are not conjugate, and where a tip edge bears, the strain
     energy of the teeth changes by up to some hundredths of the input. Over a pitch it must cancel (`pitch_imbalance`).
     """
-    return max(result.residual, abs(result.stored_power) / abs(result.torques[0]))
+    return max(result.residual, abs(result.stored_power) / abs(result.input_power))
 
 
 def pitch_imbalance(results: Sequence[PositionResult]) -> float:
@@ -47,12 +47,12 @@ def pitch_imbalance(results: Sequence[PositionResult]) -> float:
     taken before deflection: it falls with the load, not with the mesh (7e-4 where the contact's half-width is 3 % of
     the radius of curvature and tips bear; a fifteenth of that at a tenth of the load, and on deflected flanks).
     """
-    return float(energy_imbalance([r.stored_power for r in results], [r.torques[0] for r in results]))
+    return float(energy_imbalance([r.stored_power for r in results], [r.input_power for r in results]))
 
 
 def energy_imbalance(stored: ArrayLike, given: ArrayLike) -> Floats:
-    """Energy imbalance of a pitch, over its input energy, from stored powers (n, ...) and torques of the pinion (n,
-    ...) at n positions."""
+    """Energy imbalance of a pitch, over its input energy, from stored powers (n, ...) and input powers per rad/s of
+    the pinion's speed (n, ...) at n positions."""
     return np.asarray(np.abs(np.sum(stored, axis=0)) / np.sum(np.abs(given), axis=0))
 
 

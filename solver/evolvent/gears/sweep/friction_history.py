@@ -50,8 +50,9 @@ class FrictionHistory:
         return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
 
     def earlier(self, pitches: int) -> FrictionHistory:
-        """Friction history moved back by whole angular pitches, where other teeth of both gears stand as these do.
-        Teeth without load are left out: the contact need not look at them at that time."""
+        """Friction history moved back by whole angular pitches, where other teeth of both gears stand as these do;
+        forward where their number is negative. Teeth without load are left out: the contact need not look at them at
+        that time."""
         d, angle, step = self.flux.shape[1], 2.0 * np.pi * pitches, np.array([pitches, 0])
         turns = [-gear.sign * angle / self.stand.pair.gears[gear].z for gear in Member]
         loaded = [_on_loaded_teeth(rows, forces) for rows, forces in zip(self.rows, self.forces)]

@@ -34,7 +34,7 @@ def solve_position(
     """Equilibrium with friction.
 
     before: friction history at the contact's nodes, None without friction.
-    span: Δφ since then [rad].
+    span: Δφ since then [rad], negative where the wheel drives.
     solved: the same position at other coefficients, to start from; the nearest ones last.
     near: a guess of the solution, taken instead of theirs.
 
@@ -57,7 +57,7 @@ def frictional_equilibrium(
     """Equilibrium with friction after a step Δφ = span [rad]. smooth: the one without friction; before: friction
     history at the contact's nodes; guess: of the solution. Raises NotConverged."""
     slip = slip_increment(geometry, before, span)
-    return frictional(system, friction, slip, slip_direction(geometry), smooth, guess)
+    return frictional(system, friction, slip, slip_direction(geometry, span), smooth, guess)
 
 
 def extrapolated_guess(friction: float, solved: Sequence[Solved]) -> InitialGuess | None:

@@ -53,7 +53,7 @@ def sweep_until_periodic(
     while ahead.any() and len(errors) < (1 + ROUNDS) * whole:
         state, solved, begin = state.of(ahead[known]), ahead, len(errors) % whole
         if errors and begin == 0:
-            state = state.earlier(pitch.pitches)
+            state = state.earlier(model.load.driving.sign * pitch.pitches)
         chosen = list(compress(frictions, solved))
         with closing(sweep_on_ranks(model, pitch, chosen, state, comm, begin, solutions)) as swept:
             for count, position in enumerate(swept, 1):
@@ -84,13 +84,13 @@ def never_periodic(errors: Sequence[Floats], pitch: Pitch) -> NotConverged:
 
 
 def one_pitch(swept: Sequence[SweptPosition]) -> list[SweptPosition]:
-    """The positions of the pitch in order, each with the last result and state of each coefficient. swept: all of a
-    `sweep_until_periodic`."""
+    """The positions of the pitch by ascending angle, each with the last result and state of each coefficient. swept:
+    all of a `sweep_until_periodic`."""
     whole = sum(not position.again for position in swept)
     latest = list(swept[:whole])
     for done, position in enumerate(swept[whole:]):
         latest[done % whole] = _renewed(latest[done % whole], position)
-    return latest
+    return sorted(latest, key=lambda position: position.angle)
 
 
 def _renewed(first: SweptPosition, again: SweptPosition) -> SweptPosition:

@@ -33,6 +33,7 @@ from evolvent.gears.sweep.position_search import (
 )
 from evolvent.gears.sweep.slip import nominal_direction
 from evolvent_meshes.arrays import Bools
+from evolvent_meshes.gears.member import Member
 
 HALVINGS = 4
 LOG = logging.getLogger("evolvent")
@@ -67,7 +68,7 @@ class SweepState:
         return replace(self, histories=tuple(compress(self.histories, coefficients)))
 
     def earlier(self, pitches: int) -> SweepState:
-        """Sweep state moved back by whole angular pitches."""
+        """Sweep state moved back by whole angular pitches; forward where their number is negative."""
         histories = tuple(None if history is None else history.earlier(pitches) for history in self.histories)
         return replace(self, histories=histories, course=None)  # the course ends a pitch later
 
@@ -112,7 +113,7 @@ def joined(parts: Sequence[SweptPosition]) -> SweptPosition:
 class Pitch:
     """The positions to solve.
 
-    angles: pinion rotations [rad].
+    angles: pinion rotations [rad] in the order in which the gears pass them: descending where the wheel drives.
     pitches: number of angular pitches that they cover, where they are equal steps of some.
     """
 
@@ -120,10 +121,10 @@ class Pitch:
     pitches: int = 1
 
 
-def uniform_pitch(z1: int, positions: int, pitches: int = 1) -> Pitch:
-    """Pitch of `positions` equal steps over each angular pitch 2π/z_1."""
+def uniform_pitch(z1: int, positions: int, pitches: int = 1, driving: Member = Member.PINION) -> Pitch:
+    """Pitch of `positions` equal steps over each angular pitch 2π/z_1, in the order in which the gears pass them."""
     step = 2.0 * np.pi / z1 / positions
-    return Pitch(tuple(float(step * k) for k in range(pitches * positions)), pitches)
+    return Pitch(tuple(float(step * k) for k in range(pitches * positions))[:: driving.sign], pitches)
 
 
 def initial_state(frictions: Sequence[float]) -> SweepState:
@@ -140,9 +141,15 @@ def sweep_pitch(
     common: search and frictionless equilibrium of the first position, None where it is to be searched.
     known: number of a position -> how it was solved before.
 
-    Raises NotConverged, with the angle and the friction coefficient.
+    Raises NotConverged, with the angle and the friction coefficient, and ValueError where the positions follow each
+    other against the sense in which the gears turn.
     """
-    span = float(np.diff(pitch.angles).mean()) if len(pitch.angles) > 1 else 2.0 * np.pi / model.pair.pinion.z / 20
+    sense = model.load.driving.sign
+    span = sense * 2.0 * np.pi / model.pair.pinion.z / 20
+    if len(pitch.angles) > 1:
+        span = float(np.diff(pitch.angles).mean())
+    if sense * span < 0.0:
+        raise ValueError(f"pitch: wanted positions as they follow where the {model.load.driving.label} drives")
     for k in range(begin, len(pitch.angles)):
         position = _advanced(model, frictions, state, pitch.angles[k], span, HALVINGS, common, known.get(k))
         state, common = position.state, None
@@ -210,11 +217,12 @@ def _histories(
     kept = next((history for history in state.histories if history is not None), None)
     if kept is not None:
         return state.histories, shared.contact.stand.angle - kept.stand.angle
-    return tuple(_first_history(model, shared, μ) if model.has_friction_terms(μ) else None for μ in frictions), span
+    rubs = [model.has_friction_terms(μ) for μ in frictions]
+    return tuple(_first_history(model, shared, μ, span) if each else None for μ, each in zip(frictions, rubs)), span
 
 
-def _first_history(model: GearModel, shared: SharedPosition, friction: float) -> FrictionHistory:
-    heading = nominal_direction(shared.contact.geometry)
+def _first_history(model: GearModel, shared: SharedPosition, friction: float, span: float) -> FrictionHistory:
+    heading = nominal_direction(shared.contact.geometry, span)
     return FrictionHistory.of(model, shared.contact, sliding(shared.system, friction, heading, shared.smooth))
 
 

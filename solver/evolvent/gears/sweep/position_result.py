@@ -39,6 +39,7 @@ class PositionResult:
     pinion_forces: (m, d), forces on them in the pinion's own frame [N; per mm of width in 2D].
     wheel_forces: (m, d), in the wheel's.
     seconds: wall time.
+    driving: the gear that drives.
     """
 
     stand: PairRotation
@@ -57,6 +58,7 @@ class PositionResult:
     pinion_forces: Floats
     wheel_forces: Floats
     seconds: float = 0.0
+    driving: Member = Member.PINION
 
     @property
     def pressure(self) -> Floats:
@@ -79,13 +81,20 @@ class PositionResult:
         """Power lost to friction per rad/s of pinion speed [N·mm; per mm of width in 2D]."""
         c = self.contact
         k = c.traction.shape[1]
-        return float(np.sum(c.weights[:, None] * c.traction[:, 1:] * c.rate[:, 1:k]))
+        return self.driving.sign * float(np.sum(c.weights[:, None] * c.traction[:, 1:] * c.rate[:, 1:k]))
+
+    @property
+    def input_power(self) -> float:
+        """Power on the gear that drives, per rad/s of pinion speed [N·mm; per mm of width in 2D]."""
+        pinion, wheel = self.torques
+        return pinion if self.driving is Member.PINION else wheel / self.stand.pair.ratio
 
     @property
     def stored_power(self) -> float:
         """Input − output − friction power per rad/s of pinion speed [N·mm; per mm of width in 2D]: what the deflected
         teeth store, or give back where it is negative. Over a whole pitch it is zero."""
-        return self.torques[0] - self.torques[1] / self.stand.pair.ratio - self.friction_loss
+        passed = self.torques[0] - self.torques[1] / self.stand.pair.ratio
+        return self.driving.sign * passed - self.friction_loss
 
 
 def position_result(
@@ -117,6 +126,7 @@ def position_result(
         wheel_rows=wheel_rows,
         pinion_forces=pinion_forces,
         wheel_forces=wheel_forces,
+        driving=model.load.driving,
     )
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from evolvent.contact.newton.equilibrium import Equilibrium
@@ -47,17 +49,17 @@ def _beyond_nominal(geometry: ContactGeometry, before: PreviousJump) -> Floats:
     return sum(spin[:, 1:] * angle for spin, angle in zip(geometry.spins, turned)) - before.jump[:, 1:]
 
 
-def slip_direction(geometry: ContactGeometry) -> Floats:
+def slip_direction(geometry: ContactGeometry, span: float) -> Floats:
     """Unit tangent (q, d−1) of the nominal slip where the slice is far enough from the pitch point to know it, else
-    zero."""
+    zero. span: Δφ of the step [rad], negative where the wheel drives."""
     module = geometry.stand.pair.pinion.normal_module
     far = np.abs(geometry.operator.shape @ geometry.roll_distance)[:, None] > NEAR_PITCH * module
-    return np.where(far, nominal_direction(geometry), 0.0)
+    return np.where(far, nominal_direction(geometry, span), 0.0)
 
 
-def nominal_direction(geometry: ContactGeometry) -> Floats:
-    """Unit tangent (q, d−1) of the nominal slip, zero at the pitch point."""
-    v = geometry.operator.shape @ relative_velocity(geometry)[:, 1:]
+def nominal_direction(geometry: ContactGeometry, span: float) -> Floats:
+    """Unit tangent (q, d−1) of the nominal slip in a step Δφ = span [rad], zero at the pitch point."""
+    v = math.copysign(1.0, span) * (geometry.operator.shape @ relative_velocity(geometry)[:, 1:])
     size = np.linalg.norm(v, axis=1, keepdims=True)
     return np.where(size > 0.0, v / np.where(size > 0.0, size, 1.0), 0.0)
 

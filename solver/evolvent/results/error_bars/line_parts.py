@@ -36,7 +36,7 @@ def line_parts(run: RunData, index: int) -> FigureErrors:
     deflection = float(np.nanmean(errors - 1e3 * np.array([each.unloaded_error for each in solved])))
     tangent, secant = (float(np.mean([of(run, each) for each in solved])) for of in (mesh_stiffness, secant_stiffness))
     results = [each.result for each in solved]
-    loss = pitch_loss_percent([each.friction_loss for each in results], [each.torques[0] for each in results])
+    loss = pitch_loss_percent([each.friction_loss for each in results], [each.input_power for each in results])
     rubbing = results[0].friction if run.pair.pinion.base_helix_angle else 0.0
     curve = engagement(run, index)
     return FigureErrors(

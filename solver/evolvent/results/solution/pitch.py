@@ -70,8 +70,8 @@ class PitchSolution:
 
     @property
     def torques(self) -> Floats:
-        """Moments of the contact forces about both axes (k, 2) [N·mm]: input on the pinion, output of the wheel, both
-        positive."""
+        """Moments of the contact forces about both axes (k, 2) [N·mm], both positive: input on the gear that drives,
+        output of the other one."""
         return self.width_factor * np.array([result.torques for result in self.results])
 
     @property
@@ -99,7 +99,7 @@ class PitchSolution:
     def loss_ratio(self) -> float:
         """Friction work over input work of the pitch."""
         lost = sum(result.friction_loss for result in self.results)
-        return float(lost / sum(abs(result.torques[0]) for result in self.results))
+        return float(lost / sum(abs(result.input_power) for result in self.results))
 
     @property
     def rows(self) -> list[PitchRow]:
@@ -154,7 +154,7 @@ def solve_pitches(
     check_resolved(gears)
     check_frictions(frictions)
     check_positions(positions)
-    pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches)
+    pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches, gears.load.driving)
     solved = certified_pitch(gears, pitch, list(frictions), comm)
     pressures = pitch_pressures(gears, [position.results for position in solved.positions])
     cells = [_cells_across(gears, pressure) for pressure in pressures]

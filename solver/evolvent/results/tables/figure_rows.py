@@ -88,7 +88,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
     errors = 1e3 * np.array([result.transmission_error for result in results])
     top, kink = curve.peak, largest_kink(run, index)
     crosses = curve is not lowest and not few_cells_across(run)  # on few cells scatter causes crossings
-    loss = pitch_loss_percent([r.friction_loss for r in results], [r.torques[0] for r in results])
+    loss = pitch_loss_percent([r.friction_loss for r in results], [r.input_power for r in results])
     return FrictionRow(
         friction=curve.friction,
         max_pressure_MPa=top.pressure,

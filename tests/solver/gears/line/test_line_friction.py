@@ -32,16 +32,18 @@ def helical(friction: bool = True) -> LineGears:
     return LineGears.of(helical_model(), friction)
 
 
+@pytest.mark.parametrize("driving", Member)
 @pytest.mark.parametrize("holds", Member)
 @pytest.mark.parametrize("angle", [-0.012, 0.0, 0.012])
-def test_one_pair_in_the_plane_by_hand(holds: Member, angle: float) -> None:
-    """Problem: He's pair where one tooth pair bears, before, at and behind the pitch point. Exact, with d = −1 up to
-    the pitch point and 1 behind it: q = T / (r_b + μ d ρ) on the gear whose torque T is given, ρ its roll length; the
-    torque of the other one is q (r_b + μ d ρ) by its own; the lost power is μ q |ξ| (1 + 1/u)."""
-    gears, force = spur(), 100.0
-    pair, found = gears.pair, LineResult.of(spur().position(angle), force, FRICTION, holds)
+def test_one_pair_in_the_plane_by_hand(driving: Member, holds: Member, angle: float) -> None:
+    """Problem: He's pair where one tooth pair bears, before, at and behind the pitch point, as either gear passes it.
+    Exact, with d = −1 up to the pitch point and 1 behind it: q = T / (r_b + μ d ρ) on the gear whose torque T is given,
+    ρ its roll length; the torque of the other one is q (r_b + μ d ρ) by its own; the lost power is μ q |ξ| (1 + 1/u).
+    """
+    gears, force = replace(spur(), driving=driving), 100.0
+    pair, found = gears.pair, LineResult.of(gears.position(angle), force, FRICTION, holds)
     ξ = pair.pinion.base_radius * angle
-    d = 1.0 if ξ > 0.0 else -1.0
+    d = 1.0 if driving.sign * ξ > 0.0 else -1.0
     α = pair.working_pressure_angle
     rolls = pair.pinion.base_radius * np.tan(α) + ξ, pair.wheel.base_radius * np.tan(α) - ξ
     levers = [gear.base_radius + FRICTION * d * ρ for gear, ρ in zip(pair.gears, rolls)]
@@ -55,13 +57,15 @@ def test_one_pair_in_the_plane_by_hand(holds: Member, angle: float) -> None:
 
 @pytest.mark.parametrize("angle", [-0.1, 0.0, 0.07])
 @pytest.mark.parametrize("holds", Member)
-def test_power_is_in_balance_at_every_position(angle: float, holds: Member) -> None:
-    """Exact, a helical pair whose lines cross the pitch point: T_1 − T_2/u is the power of friction, 1e-12 of the
-    input; the torque that is given is held; the loss is not nothing."""
-    gears, force = helical(), 1500.0
+@pytest.mark.parametrize("driving", Member)
+def test_power_is_in_balance_at_every_position(angle: float, holds: Member, driving: Member) -> None:
+    """Exact, a helical pair whose lines cross the pitch point: T_1 − T_2/u is the power of friction where the pinion
+    drives, and less than 0 by it where the wheel does, 1e-12 of the input; the torque that is given is held; the loss
+    is not nothing."""
+    gears, force = replace(helical(), driving=driving), 1500.0
     found = LineResult.of(gears.position(angle), force, 0.2, holds)
     pinion, wheel = (each * gear.base_radius for each, gear in zip(found.forces, gears.pair.gears))
-    assert abs(pinion - wheel / gears.pair.ratio - found.friction_power) < 1e-12 * pinion
+    assert abs(driving.sign * (pinion - wheel / gears.pair.ratio) - found.friction_power) < 1e-12 * pinion
     assert found.forces[holds] == pytest.approx(force, rel=1e-12)
     assert found.friction_power > 1e-3 * pinion
 
@@ -79,15 +83,47 @@ def test_direction_reverses_at_the_pitch_point() -> None:
     """Exact: −1 before and at the pitch point, 1 behind it. Of points of a helical line it is the mean over the part
     for which they stand, so that the sum over an even line about the pitch point vanishes."""
     plane = spur().pair
-    assert direction_at(plane, np.array([-1e-3, 0.0, 1e-3]), np.ones(3)).tolist() == [-1.0, -1.0, 1.0]
+    assert direction_at(plane, np.array([-1e-3, 0.0, 1e-3]), np.ones(3), Member.PINION).tolist() == [-1.0, -1.0, 1.0]
     pair, stations = helical().pair, helical().position(0.0).stations
-    d, ξ = sliding_direction(pair, stations), stations.roll_distance
+    d, ξ = sliding_direction(pair, stations, Member.PINION), stations.roll_distance
     extent = np.sin(pair.pinion.base_helix_angle) * np.asarray(stations.hats.sum(axis=1)).ravel()
     assert (d[ξ < -extent] == -1.0).all() and (d[ξ > extent] == 1.0).all()
     line = stations.point_tooth == 0
     assert ξ[line].min() < 0.0 < ξ[line].max()
-    moved = direction_at(pair, np.array([-0.01, 0.0, 0.01]), np.full(3, 0.1))
+    moved = direction_at(pair, np.array([-0.01, 0.0, 0.01]), np.full(3, 0.1), Member.PINION)
     assert moved[1] == 0.0 and -1.0 < moved[0] == -moved[2] < 0.0
+
+
+def test_wheel_that_drives_reverses_friction() -> None:
+    """Exact: at each point the direction is the opposite one, the pitch point of a spur pair excepted, which keeps its
+    former one: towards the roots, as the contact comes from the driving gear's root either way."""
+    for gears in (spur(), helical()):
+        stations = gears.position(0.0).stations
+        one, other = (sliding_direction(gears.pair, stations, driving) for driving in Member)
+        away = stations.roll_distance != 0.0
+        assert away.any() and np.array_equal(other[away], -one[away])
+    assert direction_at(spur().pair, np.zeros(1), np.ones(1), Member.WHEEL).tolist() == [-1.0]
+
+
+def test_driving_wheel_is_the_mirror_image_of_a_driving_pinion() -> None:
+    """Problem: He's pair, both gears alike, at μ = 0.2. Exact: where the wheel drives and has the torque, the pair at
+    −φ is that at φ where the pinion drives and has it, turned by half a turn about the pitch point: the same
+    transmission error, power of friction and forces of tooth pairs, torques exchanged, 1e-9. At φ itself the
+    transmission error differs by more than 0.5 %: so it would with friction as of a driving pinion."""
+    gears, force = spur(), 2400.0 / 20.0
+    pinion, wheel = (replace(gears, free=member, driving=member) for member in Member)
+    assert gears.pair.ratio == 1.0
+    apart = []
+    for angle in 2.0 * np.pi / 50.0 * np.array([0.2, 0.45, 0.6, 0.9]):
+        one = LineResult.of(pinion.position(angle), force, 0.2, Member.PINION)
+        image, there = (LineResult.of(wheel.position(each), force, 0.2, Member.WHEEL) for each in (-angle, angle))
+        assert image.transmission_error == pytest.approx(one.transmission_error, rel=1e-9)
+        assert image.forces == pytest.approx(one.forces[::-1], rel=1e-9)
+        assert image.friction_power == pytest.approx(one.friction_power, rel=1e-9) and one.friction_power > 0.0
+        loads = sorted(image.force(tooth) for tooth in image.teeth)
+        assert loads == pytest.approx(sorted(one.force(tooth) for tooth in one.teeth), rel=1e-9)
+        apart.append(abs(there.transmission_error / one.transmission_error - 1.0))
+    assert max(apart) > 5e-3
 
 
 def test_normal_displacement_by_friction_is_work_of_nodal_forces() -> None:

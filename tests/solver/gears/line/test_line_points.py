@@ -25,7 +25,7 @@ def test_points_in_the_plane_are_hertz_half_ellipses() -> None:
     2q/(πb) and the half-width b = √(4qρ/πE*)."""
     gears = spur()
     found = LineResult.of(gears.position(ANGLE), 120.0, FRICTION)
-    points, system = line_points(gears.pair, found, None), found.position.system
+    points, system = line_points(gears.pair, found, None, gears.driving), found.position.system
     for k, tooth in enumerate(found.teeth):
         q, at = found.force(tooth), points.tooth == tooth
         if q == 0.0:
@@ -43,7 +43,7 @@ def test_layers_bear_what_the_line_does() -> None:
     that of the tooth pair."""
     gears = helical()
     found = LineResult.of(gears.position(ANGLE), 1500.0)
-    points, ends = line_points(gears.pair, found, heights(gears)), heights(gears)
+    points, ends = line_points(gears.pair, found, heights(gears), gears.driving), heights(gears)
     assert points.traction.shape[1] == 1
     for tooth in found.teeth:
         at = points.tooth == tooth
@@ -57,7 +57,7 @@ def test_friction_of_the_points_loses_the_power() -> None:
     its middle. τ is at most μ p, and less only where the line passes the pitch point, where the points stick."""
     for gears, ends, force, near in ((spur(), None, 120.0, 1e-12), (helical(), heights(helical()), 1500.0, 5e-4)):
         found = LineResult.of(gears.position(ANGLE), force, FRICTION)
-        points = line_points(gears.pair, found, ends)
+        points = line_points(gears.pair, found, ends, gears.driving)
         power = float(np.sum(points.weights * points.traction[:, 1] * points.rate[:, 1]))
         assert power == pytest.approx(found.friction_power, rel=near)
         bound = FRICTION * points.pressure

@@ -1,7 +1,9 @@
-"""How positions and friction coefficients are divided among ranks; that ranks agree is in test_run.py."""
+"""How positions and friction coefficients are divided among ranks; that ranks agree where the pinion drives is in
+test_run.py."""
 
 from __future__ import annotations
 
+import json
 from itertools import pairwise
 from typing import cast
 
@@ -15,6 +17,25 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import parallel_sweep
 from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
+from tests.support.running.processes import RunScript
+
+WHEEL_DRIVES = """
+import json, sys
+from dataclasses import replace
+from mpi4py import MPI
+from evolvent.gears.solution.certified_pitch import certified_pitch
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent_meshes.gears.member import Member
+from tests.support.gear_cases import helical_scene, model_of
+gears = model_of(helical_scene())
+gears = replace(gears, load=replace(gears.load, driving=Member.WHEEL))
+pitch, found = uniform_pitch(gears.pair.pinion.z, 3, 1, Member.WHEEL), []
+for frictions in ([0.3], [0.0, 0.1, 0.3]):
+    for results in certified_pitch(gears, pitch, frictions, MPI.COMM_WORLD).by_friction:
+        found += [value for each in results for value in (each.transmission_error, each.friction_loss)]
+if MPI.COMM_WORLD.rank == 0:
+    sys.stdout.write(json.dumps(found))
+"""
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 20])
@@ -48,3 +69,17 @@ def test_a_position_that_cannot_be_prepared_is_left_to_each_rank(
     raised = ArithmeticError
     with pytest.raises(ArithmeticError):
         sweep._prepared(range(1), initial_state(frictions))
+
+
+@pytest.mark.mpi
+def test_ranks_agree_where_the_wheel_drives(run_script: RunScript) -> None:
+    """Problem: a helical pair that its wheel drives, at one friction coefficient, for which one rank prepares positions
+    for the other, and at three, which they divide. Exact: transmission errors and friction powers of one rank, 1e-7;
+    friction takes power at each position."""
+    found = []
+    for ranks in (1, 2):
+        done = run_script("-c", WHEEL_DRIVES, ranks=ranks)
+        assert done.returncode == 0, done.stderr
+        found.append(json.loads(done.stdout))
+    assert found[1] == pytest.approx(found[0], rel=1e-7, abs=1e-7)
+    assert len(found[0]) == 2 * 3 * 4 and min(found[0][1:6:2]) > 0.0

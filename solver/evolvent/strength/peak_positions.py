@@ -17,9 +17,10 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.solution.certificates import certify
-from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, sweep_pitch
+from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, sweep_pitch
 from evolvent.results.error_bars.peak_bounds import peak_bounds
 from evolvent.strength.root_passage import GearRoots, root_passages
+from evolvent_meshes.gears.member import Member
 
 GAIN = 0.005
 """Rise of the largest stress between two positions that is left unresolved, over the largest stress."""
@@ -71,18 +72,16 @@ def with_angles(
     model: GearModel, known: SweptRoots, angles: Sequence[float], frictions: Sequence[float], comm: MPI.Comm,
     stored: Stored = solved_at_once,
 ) -> SweptRoots:
-    """Root stress with further pinion rotations [rad], each from the state of the last one before it. Collective.
-    stored: see `Stored`.
+    """Root stress with further pinion rotations [rad], each from the state of the last one that the gears pass
+    before it. Collective. stored: see `Stored`.
 
     Raises NotConverged, SearchError, BalanceError.
     """
     if not angles:
         return known
-    stands = np.array([each.angle for each in known.positions])
 
     def solve(angle: float) -> SweptPosition:
-        state = known.positions[int(np.searchsorted(stands, angle)) - 1].state
-        position = next(sweep_pitch(model, Pitch((angle,)), frictions, state))
+        position = next(sweep_pitch(model, Pitch((angle,)), frictions, _before(model, known.positions, angle)))
         certify(position.results)
         return position
 
@@ -94,6 +93,16 @@ def with_angles(
     more = on_first(comm, partial(roots_of, model, further))
     joined = [(pinion.joined(a), wheel.joined(b)) for (pinion, wheel), (a, b) in zip(known.roots, more)]
     return SweptRoots(every, joined)
+
+
+def _before(model: GearModel, positions: Sequence[SweptPosition], angle: float) -> SweepState:
+    """State of the sweep at the last of some positions, by ascending angle, that the gears pass before an angle [rad];
+    of the next pitch where the wheel drives and that is the first one there."""
+    next_one = int(np.searchsorted([each.angle for each in positions], angle))
+    if model.load.driving is Member.PINION:
+        return positions[next_one - 1].state
+    whole, number = divmod(next_one, len(positions))
+    return positions[number].state.earlier(-whole)
 
 
 def _further(model: GearModel, known: SweptRoots) -> list[float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -24,6 +25,7 @@ from evolvent.strength.peak_positions import (
     with_peaks,
 )
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import spur_scene
 
 FRICTIONS, POSITIONS = (0.0, 0.1), 8
@@ -104,3 +106,23 @@ def test_narrow_intervals_stay(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("evolvent.strength.peak_positions.NARROWEST", 1.001 / POSITIONS)
     every = with_peaks(model(), known(POSITIONS), FRICTIONS, MPI.COMM_SELF)
     assert every.positions == uniform(POSITIONS)
+
+
+def test_further_positions_of_a_driving_wheel() -> None:
+    """The wheel drives: positions midway between eight, behind the last one too, are those of sixteen, whose history is
+    that of the next higher angle, 1e-6 of the wheel's torque without friction; with it 1e-3."""
+    gears = replace(model(), load=replace(model().load, driving=Member.WHEEL))
+
+    def pitch(positions: int) -> list[SweptPosition]:
+        angles = uniform_pitch(gears.pair.pinion.z, positions, 1, Member.WHEEL)
+        state = initial_state(FRICTIONS)
+        return one_pitch(list(sweep_until_periodic(gears, angles, FRICTIONS, state, MPI.COMM_SELF)))
+
+    coarse, fine = pitch(POSITIONS), pitch(2 * POSITIONS)
+    wanted = [each.angle for each in fine[1::2]]
+    assert wanted[-1] > coarse[-1].angle
+    every = with_angles(gears, SweptRoots(coarse, roots_of(gears, coarse)), wanted, FRICTIONS, MPI.COMM_SELF)
+    for index, bound in enumerate((1e-6, 1e-3)):
+        found, exact = ([each.results[index].torques[1] for each in swept] for swept in (every.positions, fine))
+        assert found == pytest.approx(exact, rel=bound)
+        assert min(each.results[index].friction_loss for each in every.positions) > -1e-9

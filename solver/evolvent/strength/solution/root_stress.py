@@ -105,7 +105,7 @@ def root_stress(
     dolfinx_compat.silence_logs()
     one_sector = replace(problem, options=replace(problem.options, whole_gears=False))  # it has the roots
     gears = prepare_model(one_sector, comm, RootMesh(int(refinement))).model
-    pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches)
+    pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches, gears.load.driving)
     solved = certified_pitch(gears, pitch, list(frictions), comm)
     found = certified_roots(gears, problem, solved, list(frictions), comm)
     pinion, wheel = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)

@@ -11,6 +11,7 @@ from evolvent.dynamics.operation_figures import operation_warnings
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.solution.certificates import certify, certify_pitch
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
@@ -18,7 +19,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.run_data import archived_run
 from evolvent.results.tables.tables import summary, write_tables
 from evolvent.run.call import Call
-from evolvent.run.kept_pitch import checked_meshes, pitch_of, timings_of
+from evolvent.run.kept_pitch import checked_meshes, timings_of
 from evolvent.run.output import facts_of
 from evolvent.run.progress import CYCLES
 from evolvent.scene.gear_problem import gear_problem
@@ -56,7 +57,7 @@ def wear_scene(call: Call, scene: Scene, operating: OperatingPoint | None) -> tu
     preparing = timings_of(preparation)
     if kept is not None:
         call.on_first(lambda: call.begin(scene, resumed=True))
-    pitch, μ = pitch_of(scene), scene.contact.friction[0]
+    pitch, μ = uniform_pitch(scene.pinion.teeth, scene.sweep.positions), scene.contact.friction[0]
     motion = mesh_motion_of(call, scene)
     gears = GearWear(preparation.model, pitch, μ, law_of(wear), call.comm, motion, operating)
     meshes = MeshRecord.of([MeshedGear.of(body) for body in preparation.model.bodies])

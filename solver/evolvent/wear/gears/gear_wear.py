@@ -46,7 +46,7 @@ the volume's certificate."""
 class GearWear:
     """Wear of a gear pair at one friction coefficient, a `WearModel`; a cycle is one revolution of the pinion.
 
-    pitch: the positions of one pitch.
+    pitch: the positions of one pitch, ascending whichever gear drives.
     friction: friction coefficient of the contact solutions.
     law: Archard's coefficients of pinion and wheel.
     mesh_motion: when and how the meshes follow the wear; None: never.

@@ -54,7 +54,7 @@ class SweepProgress:
 class WornSweep:
     """A sweep over one pitch of worn flanks at one friction coefficient.
 
-    pitch: all its angles.
+    pitch: all its angles, ascending.
     friction: friction coefficient.
     grids: of pinion and wheel flank.
     step: pinion rotation between positions [rad].
@@ -77,8 +77,9 @@ class WornSweep:
         return together(self.comm, partial(self._completed, model, swept, shared, deflected))
 
     def _swept(self, model: GearModel, shared: Sequence[SharedPosition]) -> list[SweptPosition]:
-        """Positions of this rank, solved with friction. The ranks solve one after the other, each from the friction
-        history of the one before, and repeat the pitch until the friction state is periodic (periodic_pitch.py)."""
+        """Positions of this rank, solved with friction. The ranks solve one after the other, as the gears pass their
+        positions, each from the friction history of the one before, and repeat the pitch until the friction state is
+        periodic (periodic_pitch.py)."""
         progress = SweepProgress(initial_state([self.friction]))
         by_number = dict(zip(self.numbers, shared))
         if not model.has_friction_terms(self.friction):
@@ -86,7 +87,7 @@ class WornSweep:
             return [swept[k] for k in self.numbers]
         mine: dict[int, SweptPosition] = {}
         for again in range(1 + ROUNDS):
-            for rank in range(self.comm.size):
+            for rank in range(self.comm.size)[:: model.load.driving.sign]:
                 searched = by_number if rank == self.comm.rank else {}
                 before = replace(progress, again=again > 0)
                 progress = together(self.comm, partial(self._in_turn, model, searched, before))
@@ -94,15 +95,18 @@ class WornSweep:
                 progress = self.comm.bcast(replace(progress, positions={}), rank)
                 if progress.closed:
                     return [mine[k] for k in self.numbers]
-            progress = replace(progress, state=progress.state.earlier(1))
+            progress = replace(progress, state=progress.state.earlier(model.load.driving.sign))
         raise never_periodic(progress.errors, self.pitch)
 
     def _in_turn(
         self, model: GearModel, searched: Mapping[int, SharedPosition], progress: SweepProgress
     ) -> SweepProgress:
         """Solves the positions of one rank, until the friction state is periodic."""
-        for k, common in searched.items():
-            swept = next(sweep_pitch(model, self.pitch, [self.friction], progress.state, k, common))
+        sense, count = model.load.driving.sign, len(self.pitch.angles)
+        passed = Pitch(self.pitch.angles[::sense])
+        for k, common in sorted(searched.items())[::sense]:
+            number = k if sense > 0 else count - 1 - k
+            swept = next(sweep_pitch(model, passed, [self.friction], progress.state, number, common))
             errors = (*progress.errors, transmission_errors(swept, [self.friction]))
             closed = progress.again and is_periodic(errors, self.pitch)
             state = replace(swept.state, patch=None)

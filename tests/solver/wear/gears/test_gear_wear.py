@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from evolvent.gears.sweep.periodic_pitch import TOLERANCE
 from evolvent.gears.sweep.pitch_sweep import Pitch, uniform_pitch
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears.gear_wear import GearWear
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, model_of
 from tests.support.gear_wear_cases import K, smooth_wear, solved_pitch, wear_scene, wearing_gears
 
@@ -96,3 +99,20 @@ def test_implicit_block_on_other_meshes_is_refused() -> None:
     gears.update_meshes(smooth_wear(gears, 1e-3))
     with pytest.raises(ValueError, match="found one on others"):
         gears.implicit_block(gears.begin, now, 1e3)
+
+
+def test_wear_of_a_driving_wheel_is_the_mirror_image_of_that_of_a_driving_pinion() -> None:
+    """Problem: He's pair, both gears alike and alike in K/H, relieved, at μ = 0.3. Exact: where the wheel drives and
+    has the torque it wears as the pinion where that drives and has it, and the other way round, 1.5 % of the deepest;
+    the contact is on the pinion's mesh. The driving gear wears 20 % deeper at its deepest place."""
+    gears = model_of(wear_scene("spur"))
+    rates = []
+    for driving in Member:
+        own = replace(gears, load=replace(gears.load, on=driving, driving=driving))
+        study = GearWear(own, uniform_pitch(gears.pair.pinion.z, 6), 0.3, Archard(K, K))
+        rates.append(study.by_gear(study.evaluate(study.begin).rate))
+    for gear in Member:
+        one, image = rates[Member.PINION][gear], rates[Member.WHEEL][gear.mate]
+        assert image == pytest.approx(one, abs=0.015 * one.max())
+    for driving in Member:
+        assert rates[driving][driving].max() > 1.2 * rates[driving][driving.mate].max()

@@ -16,6 +16,7 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.schema.errors import InputProblem, SceneError
 from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 FEWEST_POSITIONS = 3
@@ -71,13 +72,16 @@ def backlash_problem(scene: Scene) -> InputProblem | None:
     return InputProblem("dynamics.backlash_um", found, allowed, f"give {GIVING}")
 
 
-def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
-    """Settings of a vibration from the section, with those that follow from the gears where it leaves them open."""
+def drive_settings(
+    pair: GearPair, section: DynamicsSection, driving: Member = Member.PINION
+) -> DriveSettings:
+    """Settings of a vibration from the section, with those that follow from the gears where it leaves them open.
+    driving: the gear that drives."""
     backlash = geometric_backlash(pair) if section.backlash_um is None else 1e-3 * section.backlash_um
     series = math.inf if section.series_stiffness_N_per_um is None else 1e3 * section.series_stiffness_N_per_um
     return DriveSettings(
         moments_of_inertia(pair, section), section.damping_ratio, backlash, section.damping_in_separation,
-        section.ground_damping_ratio, series, section.mesh,
+        section.ground_damping_ratio, series, section.mesh, driving=driving,
     )
 
 
@@ -89,6 +93,6 @@ def operating_point(scene: Scene) -> OperatingPoint | None:
         return None
     check_vibration(scene)
     shares = tuple(sorted(percent / 100.0 for percent in section.torque_percents))
-    settings = drive_settings(scene.gear_pair(), section)
+    settings = drive_settings(scene.gear_pair(), section, Member.named(scene.load.driving))
     of_several: Literal["mean", "largest"] = "largest" if scene.wear is None else "mean"
     return OperatingPoint(settings, section.operating_rpm, section.direction, shares, scene.sweep.positions, of_several)

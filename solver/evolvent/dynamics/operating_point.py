@@ -39,6 +39,7 @@ from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.gears.sweep.position_search import SearchedAt, SharedPosition, searched_at
 from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 Motion = SteadyState | Settled
@@ -261,4 +262,7 @@ def _course(
     phases = np.arange(SAMPLES) / SAMPLES
     force = of_several([np.interp(phases, path.phases, path.force) for path in paths], axis=0) / pair.model.load
     low = force < LEAST_FORCE
-    return TorqueCourse(np.where(low, LEAST_FORCE, force), gears.pinion.z), float(np.mean(low))
+    shares = np.where(low, LEAST_FORCE, force)
+    if pair.settings.driving is Member.WHEEL:  # phase τ is the rotation −τ
+        shares = np.roll(shares[::-1], 1)
+    return TorqueCourse(shares, gears.pinion.z), float(np.mean(low))

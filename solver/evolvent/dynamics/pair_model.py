@@ -10,7 +10,7 @@ import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
 from evolvent.dynamics.one_degree import OneDegree, one_degree
-from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side, with_chords
+from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, backwards, linear_side, with_chords
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent.dynamics.small_system import GearShapes, pair_system
@@ -67,6 +67,8 @@ class DriveSettings:
     bodies: tuple[GearShapes, GearShapes] | None = None
     """Static shapes of the bodies of pinion and wheel, on their whole width; None: the bodies are rigid, with all
     inertia at the bores."""
+    driving: Member = Member.PINION
+    """Gear that drives; where it is the wheel, the pair passes the positions of the mesh in the opposite order."""
 
     def __post_init__(self) -> None:
         """Raises InputError for settings that no pair has."""
@@ -81,6 +83,7 @@ class DriveSettings:
         if series != math.inf and not (is_number(series) and series > 0.0):
             refuse("series_stiffness", "a number above 0, in N/mm", series, "leave it out for none")
         one_of("mesh", self.mesh, get_args(MeshModel))
+        one_of("driving", self.driving, tuple(Member))
         if self.bodies is not None:
             self._check_bodies(self.bodies)
 
@@ -173,8 +176,11 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
         mesh = mesh.in_series(-1.0 / body.stiffer)
     moving = _mean(mesh, load, settings)
     critical = 2.0 * math.sqrt(moving * body.mass)
+    law = _law(pair, mesh, load, settings)
+    if settings.driving is Member.WHEEL:
+        law = backwards(law)
     model = TorsionalModel(
-        body.mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
+        body.mass, load, law, settings.damping_ratio * critical,
         settings.damping_in_separation, settings.ground_damping_ratio * critical, body.stiffer * load, body.bore,
         teeth=pair.pinion.z,
     )
@@ -235,8 +241,8 @@ def geometric_backlash(pair: GearPair) -> float:
 
 
 def _law(pair: GearPair, mesh: MeshExcitation, load: float, settings: DriveSettings) -> MeshLaw:
-    """Mesh law of both sides of the teeth. Raises Jammed where they overlap between straight lines, too; the overlap of
-    splines alone is added to the backlash."""
+    """Mesh law of both sides of the teeth where the pinion drives. Raises Jammed where they overlap between straight
+    lines, too; the overlap of splines alone is added to the backlash."""
     if settings.mesh != "force_surface":
         return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)
     side, begin = mesh.force_surface(), _begin(pair, mesh.loaded.angles)

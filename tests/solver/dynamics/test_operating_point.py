@@ -22,6 +22,7 @@ from evolvent.dynamics.results.tables import excitation_rows
 from evolvent.dynamics.under_mesh_force import UnderMeshForce
 from evolvent.gears.gear_model import GearModel
 from evolvent.scene.gear_problem import gear_problem
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import model_of, spur_scene
 
 INERTIA = 7.65  # t·mm², He et al. 2022
@@ -151,3 +152,19 @@ def test_stresses_of_several_meshes_are_those_of_the_largest_force() -> None:
     assert stress.shares.max() > 1.2 * wear.shares.max()
     *_, sentence = operation_warnings([OperationFigures.of(largest)])
     assert "after 2 meshes" in sentence
+
+
+def test_driving_wheel_passes_the_mesh_backwards() -> None:
+    """Problem: equal gears without modifications, whose mesh is the same forwards and backwards but for the cells of
+    both gears. Exact: the wheel drives, and the mesh force over the rotation is that over time backwards, 1e-12; over
+    time it is nearly that where the pinion drives, 0.2 % of the load, and over the rotation it is 4 % off."""
+    point = replace(POINT, settings=replace(POINT.settings, driving=Member.WHEEL))
+    found = point.on(model(), (None, None), MPI.COMM_SELF)
+    course, plain = found.load.course, operation(3000.0).load.course
+    assert course is not None and plain is not None
+    (path,), static = found.paths, found.drive.model.load
+    for phase in (0.1, 0.3, 0.8):
+        force = float(np.interp(1.0 - phase, path.phases, path.force)) / static
+        assert course.at(phase * 2.0 * np.pi / 50.0) == pytest.approx(force, rel=1e-12)
+    assert np.roll(course.shares[::-1], 1) == pytest.approx(plain.shares, abs=2e-3)
+    assert np.abs(course.shares - plain.shares).max() > 0.04

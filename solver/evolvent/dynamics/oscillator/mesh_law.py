@@ -157,6 +157,13 @@ def mirrored(side: MeshSide, meeting: float, backlash: float) -> MeshSide:
     return MeshSide(-side.sign, phases, offset, side.depths, np.ascontiguousarray(force))
 
 
+def backwards(law: MeshLaw) -> MeshLaw:
+    """The mesh force of gears that pass their positions in the opposite order: at phase τ they stand as those of `law`
+    do at −τ."""
+    front, back = (mirrored(side, 0.0, 0.0)._replace(sign=side.sign) for side in (law.front, law.back))
+    return MeshLaw(front, back)
+
+
 def _offsets(side: MeshSide, cells: Ints, phases: Floats) -> Floats:
     """Offsets e (..., n) [mm] of a side at phases (..., n) in phase intervals (n,)."""
     return np.asarray((side.offset[cells] * (phases - side.phases[cells])[..., None] ** np.arange(4)).sum(axis=-1))

@@ -69,7 +69,7 @@ class Dynamics(Computation[SolvedDynamics]):
     def solve(self, call: Call) -> SolvedDynamics:
         """Excitation, stored position by position, and the vibration on it. Raises NoSteadyState, too."""
         loads, section = self._loads, self._section
-        settings = drive_settings(loads.problem.pair, section)
+        settings = drive_settings(loads.problem.pair, section, loads.problem.driving)
         call.progress.stage(BODIES)
         settings = with_bodies(settings, loads.problem, section, call.comm)
         excitation = solved_excitation(call, loads)

@@ -132,10 +132,10 @@ DEFORMED = (
 FORCES = (
     "Mean over the pitch, and largest less smallest value; friction included. The forces act on the gear, bearings "
     "react with the opposite. x is the line of centres, from pinion to wheel, z the axis; seen from +z the pinion "
-    "turns counter-clockwise; y = z × x. Without friction they are those of the textbooks: tangential T/r_w, radial "
-    "that times tan α_wt, axial that times tan β_w; where a relieved flank or a tip's edge bears its normal is tilted, "
-    "and the radial force is one or two per cent larger in the mean. These forces have no error bar: hold runs with "
-    "more positions and finer meshes against each other."
+    "turns counter-clockwise where it drives; y = z × x. Without friction they are those of the textbooks: tangential "
+    "T/r_w, radial that times tan α_wt, axial that times tan β_w; where a relieved flank or a tip's edge bears its "
+    "normal is tilted, and the radial force is one or two per cent larger in the mean. These forces have no error bar: "
+    "hold runs with more positions and finer meshes against each other."
 )
 SECTIONS: tuple[tuple[str, type, str] | tuple[Table[Any] | Record[Any], str], ...] = (
     ("`summary.json`", Summary, "Python's `json` or any other reader; a number that does not exist is `null`."),

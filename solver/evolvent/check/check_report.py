@@ -167,6 +167,7 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
 
     return [
         _one(f"torque held on the {scene.load.on}", "T", "N·m", 3, scene.load.torque_Nm),
+        *_driving_rows(scene),
         *_operating_rows(scene),
         Row("friction coefficients", "μ", "", (", ".join(f"{value:g}" for value in scene.contact.friction),)),
         _one("normal force on the flanks", "F_bn", "N", 1, estimate.normal_force),
@@ -179,6 +180,17 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
         pressure("at the pitch point, shortest length", 0.0, shortest),
         pressure("at the start of engagement, mean length", start),
         pressure("at the end of engagement, mean length", end),
+    ]
+
+
+def _driving_rows(scene: Scene) -> list[Row]:
+    """Rows on a wheel that drives: the flanks that bear, which are the same, and the sense of rotation; none where the
+    pinion drives."""
+    if scene.load.driving == "pinion":
+        return []
+    return [
+        Row("driving gear", "", "", (f"{scene.load.driving}, the pinion turns clockwise seen from z > 0",)),
+        Row("flanks that bear, on both gears", "", "", ("left ones seen from z > 0, as where the pinion drives",)),
     ]
 
 

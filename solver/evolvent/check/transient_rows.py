@@ -17,6 +17,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.inertias import moments_of_inertia
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
+from evolvent.scene.vibration_limits import sense_of_transient
 
 STEPS = "Time steps at each speed", ("f_z [Hz]", "step [µs]", "steps/period")
 """Title of the table of `step_lines`, and the heads of its columns."""
@@ -66,12 +67,14 @@ def step_lines(scene: Scene, section: TransientSection) -> list[Row]:
 
 
 def transient_warnings(scene: Scene) -> list[str]:
-    """Warnings of an unknown backlash, and of speeds at which equal time steps do not resolve the natural frequency of
-    the pair; none of the latter where a tolerance divides steps."""
+    """Warnings of a wheel that drives, an unknown backlash, too many modes, and speeds at which equal time steps do not
+    resolve the natural frequency of the pair; none of the latter where a tolerance divides steps."""
     section = scene.transient
     if section is None:
         return []
     found = _without_backlash(scene, section)
+    if problem := sense_of_transient(scene.load):
+        found.append(f"`evolvent transient` would refuse this scene: {problem}.")
     if problem := too_many_modes(scene, section):
         found.append(f"`evolvent transient` would refuse this scene: {problem}.")
     if section.tolerance is not None:

@@ -22,12 +22,12 @@ class ShaftForces:
     """Loads of the mesh on a gear with friction: mean over the pitch, and peak-to-peak value.
 
     The forces act on the gear; the bearing reactions are opposite. x points along the line of centres from pinion to
-    wheel, z along the axes, and y = z × x. Seen from +z the pinion turns counter-clockwise.
+    wheel, z along the axes, and y = z × x. Seen from +z the pinion turns counter-clockwise where it drives.
     """
 
     tangential_N: float
-    """Tangential force: on the pinion positive along −y, against its rotation; on the wheel positive along +y, with its
-    rotation."""
+    """Tangential force: on the pinion positive along −y, on the wheel along +y; against the rotation of the gear that
+    drives, with that of the other one."""
     tangential_peak_to_peak_N: float
     """Largest less smallest tangential force of the pitch."""
     radial_N: float

@@ -153,7 +153,7 @@ class _Sweep:
         self, call: Call, scene: Scene, meshes: Meshes, resume: ResumePoint, gears: Preparation | None = None
     ) -> None:
         self.call, self.scene, self.meshes = call, scene, meshes
-        self.pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions, meshes.problem(scene).pitches)
+        self.pitch = pitch_of(scene, meshes.problem)
         self.archive, self.groups = call.archive(meshes.stored_as(scene), meshes.part), friction_groups(scene)
         together = len(self.groups) > 1 and not resume.is_end  # the groups end together
         self.resume = ResumePoint() if together else resume
@@ -272,9 +272,11 @@ def friction_groups(scene: Scene) -> list[slice]:
     return [slice(0, count)] if shares_gears(scene) else [slice(i, i + 1) for i in range(count)]
 
 
-def pitch_of(scene: Scene) -> Pitch:
-    """The pinion rotations that a scene asks for."""
-    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, gear_problem(scene).pitches)
+def pitch_of(scene: Scene, problem: Callable[[Scene], GearProblem] = gear_problem) -> Pitch:
+    """The pinion rotations that a scene asks for, in the order in which the gears pass them. problem: makes its gear
+    problem."""
+    pitches, driving = problem(scene).pitches, Member.named(scene.load.driving)
+    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, pitches, driving)
 
 
 def _log_line(position: SweptPosition) -> str:

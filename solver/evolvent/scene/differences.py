@@ -29,7 +29,8 @@ def identity(scene: Scene) -> list[Any]:
     """All that the results of a scene depend on, as JSON has it: its values, those derived from them, and its flank
     charts. Keys have their first names, so that it is the same in all versions."""
     bare = essence(scene)
-    values = bare.model_dump(mode="json", exclude={"load": {"percents"}, "design": True})  # first versions had neither
+    of_load = {"percents"} if bare.load.driving == "wheel" else {"percents", "driving"}
+    values = bare.model_dump(mode="json", exclude={"load": of_load, "design": True})  # first versions had none of them
     return [first_names(values), derived_values(bare), *charts(scene)]
 
 

@@ -20,6 +20,7 @@ def gear_problem(scene: Scene) -> GearProblem:
         flanks=(pinion, wheel),
         options=gear_options(scene),
         mesh_torques=None if served is None else (1e3 * served[0], 1e3 * served[1]),
+        driving=Member.named(scene.load.driving),
     )
 
 

@@ -13,6 +13,7 @@ from evolvent.gears.problem.load_limits import rounded_down, rounded_up
 from evolvent.scene.inertias import KG_M2, moments_of_inertia
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import InputProblem, shown
+from evolvent.scene.schema.loading import LoadSection
 from evolvent_meshes.gears.pair import GearPair
 
 FASTEST_RIM, FAST_RIM = 400.0, 200.0
@@ -29,6 +30,18 @@ LIGHTEST = 0.01
 SOFT = 0.05
 """Stiffness in series with the mesh over that of the mesh by ISO 6336-1, below which the stiffness in series is
 doubtful."""
+
+
+def sense_of_transient(load: LoadSection) -> InputProblem | None:
+    """Input problem of a wheel that drives, which `evolvent transient` does not compute; None where the pinion does."""
+    if load.driving == "pinion":
+        return None
+    allowed = '"pinion" for evolvent transient, whose positions follow each other as they do where the pinion drives'
+    remedy = (
+        "`evolvent run` has the contact where the wheel drives, with dynamics.operating_rpm at a speed, and `evolvent "
+        "dynamics` the vibration"
+    )
+    return InputProblem("load.driving", shown(load.driving), allowed, remedy)
 
 
 @dataclass(frozen=True)

@@ -172,3 +172,11 @@ def test_webs_and_where_bores_are_held_are_told() -> None:
     held = overview(helical_scene(*webbed, "pinion.support_width_mm=4"))
     assert re.search(r"bore held from +z +mm +-2\.000 +-1\.000\n +to +mm +2\.000 +2\.000", held)
     assert "on a web" not in overview(helical_scene())
+
+
+def test_driving_wheel_is_reported() -> None:
+    """The gear that drives, the sense of rotation and the flanks that bear; nothing of it where the pinion drives."""
+    text = overview(spur_scene("load.driving=wheel"))
+    assert re.search(r"^  driving gear +wheel, the pinion turns clockwise seen from z > 0$", text, re.MULTILINE)
+    assert re.search(r"^  flanks that bear, on both gears +left ones seen from z > 0", text, re.MULTILINE)
+    assert "driving gear" not in overview(spur_scene())

@@ -102,6 +102,12 @@ def test_modes_and_time_steps_are_counted() -> None:
     assert steps == "24,000"
 
 
+def test_a_wheel_that_drives_is_told() -> None:
+    """That `evolvent transient` would refuse the scene; nothing of it where the pinion drives."""
+    assert any("load.driving" in each for each in scene_warnings(pair("load.driving=wheel")))
+    assert not any("load.driving" in each for each in scene_warnings(pair()))
+
+
 def test_too_many_modes_are_refused(tmp_path: Path) -> None:
     """40,000 r/min in 400 positions resolve vibrations up to 3.3 MHz, of which He's gears have thousands: refused
     before anything is computed, unless the scene says how many."""

@@ -16,9 +16,12 @@ from evidence.calls import temporary_call
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.solution import certificates
 from evolvent.gears.solution.certificates import BalanceError, PitchImbalance
+from evolvent.results.archive.store import ArchiveError
 from evolvent.run.call import Call, Options
 from evolvent.run.kept_pitch import OWN, friction_groups, kept_pitch, resume_point
 from evolvent.scene.scene import Scene
+from evolvent_meshes.gears.member import Member
+from tests.support.computing.interruption import Interrupted, interrupted
 from tests.support.gear_cases import spur_scene
 from tests.support.running.patches import calling_first
 
@@ -64,6 +67,27 @@ def test_pitch_has_its_positions_in_order(call: Call) -> None:
     assert state is not None and last.beyond_nominal == state.beyond_nominal
     assert last.histories[0] is not None and state.histories[0] is not None
     assert np.array_equal(last.histories[0].flux, state.histories[0].flux)
+
+
+def test_pitch_of_a_driving_wheel_is_resumed(call: Call, tmp_path: Path) -> None:
+    """Where the wheel drives, positions are solved and stored by descending angle, and reported by ascending one. A
+    pitch interrupted after its second position and resumed is that of one call, 1e-8 of each transmission error, and
+    its friction power is positive as stored; in the scene where the pinion drives its folder is refused."""
+    scene, pair = scene_of("contact.friction=0.3", "load.driving=wheel"), spur_scene().gear_pair()
+    with temporary_call(tmp_path / "whole") as other:
+        whole = kept_pitch(other, scene)
+    with interrupted(2 + 2 * 2), pytest.raises(Interrupted):  # gears, then a position and its state each
+        kept_pitch(call, scene)
+    found = kept_pitch(resumed(call), scene)
+    swept = found.archive.read_sweep(pair)
+    assert [each.angle for each in swept[:3]] == sorted((each.angle for each in swept[:3]), reverse=True)
+    for pitch in (found, whole):
+        assert [each.angle for each in pitch.solved.positions] == sorted(each.angle for each in swept[:3])
+    for one, exact in zip(found.archive.read_positions(pair), whole.solved.positions):
+        assert one.results[0].transmission_error == pytest.approx(exact.results[0].transmission_error, rel=1e-8)
+        assert one.results[0].driving is Member.WHEEL and one.results[0].friction_loss > -1e-9
+    with pytest.raises(ArchiveError, match=r'load\.driving = "pinion" \(kept: "wheel"\)'):
+        resume_point(resumed(call), scene_of("contact.friction=0.3"), OWN)
 
 
 def test_solved_pitch_is_resumed_at_its_end(call: Call, prepared: list[int]) -> None:

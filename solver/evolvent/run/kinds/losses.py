@@ -51,7 +51,8 @@ class LossRow:
     loss_percent_error: float
     """Estimated error of the loss."""
     input_at_1000_rpm_W: float
-    """Input power at 1000 r/min of the pinion. Where the torque is held on the wheel, the loss adds to it."""
+    """Input power at 1000 r/min of the pinion. Where the torque is held on the gear that is driven, the loss adds to
+    it."""
     loss_at_1000_rpm_W: float
     """Friction power at 1000 r/min of the pinion. As μ is the same at all speeds, so is the loss in percent, and the
     power is in proportion to the speed."""
@@ -152,7 +153,7 @@ def _rows(figures: PitchFigures) -> Iterator[LossRow]:
     passed = 1e-3 * run.scene.hertz_estimate().pinion_torque * MeshSpeed(SPEED, run.pair.pinion.z).rad_s
     for index, row in enumerate(figures.rows):
         loss, bar = 0.01 * row.loss_percent, 0.01 * run.errors.bar("loss_percent", index)
-        delivered = 1.0 - loss if load.on == "wheel" else 1.0  # part of the input that the torque is held for
+        delivered = 1.0 - loss if load.on != load.driving else 1.0  # part of the input that the torque is held for
         factor, factor_bar = (each / row.friction if row.friction else math.nan for each in (loss, bar))
         yield LossRow(
             torque_Nm=load.torque_Nm, torque_on=load.on, friction=row.friction, loss_percent=100.0 * loss,

@@ -50,7 +50,8 @@ class LoadSection(SceneSection):
         "torque that is held constant",
         "a number above 0 up to 1e7, in N·m",
         "give the torque in N·m; it acts on the gear that load.on names",
-        too_small="give a torque above 0 without a sign, the pinion drives; it acts on the gear that load.on names",
+        too_small="give a torque above 0 without a sign, the pinion drives unless load.driving is the wheel; it acts "
+        "on the gear that load.on names",
         too_large="mind the unit: give the torque in N·m, 1 N·m is 1000 N·mm",
         gt=0,
         le=1e7,
@@ -60,7 +61,12 @@ class LoadSection(SceneSection):
         '"pinion" or "wheel" (or "gear", which is the wheel)',
         default="pinion",
     )
-
+    driving: Literal["pinion", "wheel"] = key(
+        "the gear that drives; the flanks that bear are the same, so where the wheel drives both gears turn the other "
+        "way round, and friction acts in the opposite direction",
+        '"pinion" or "wheel" (or "gear", which is the wheel)',
+        default="pinion",
+    )
     mesh_torques_Nm: tuple[float, float] | None = key(
         "range of torques that the meshes are made for: elements small enough for the lightest one, fine flanks long "
         "enough for the heaviest; flanks with levels take as many as each torque needs; `evolvent loads` and "
@@ -96,7 +102,7 @@ class LoadSection(SceneSection):
             raise validation_error(InputProblem("mesh_torques_Nm", shown(served), allowed, remedy))
         return self
 
-    @field_validator("on", mode="before")
+    @field_validator("on", "driving", mode="before")
     @classmethod
     def _gear_is_wheel(cls, value: Any) -> Any:
         return "wheel" if value == "gear" else value

@@ -35,6 +35,17 @@ def test_power_is_that_of_the_gear_with_the_torque(tmp_path: Path, gear: str) ->
     assert row.loss_at_1000_rpm_W == pytest.approx(0.01 * row.loss_percent * row.input_at_1000_rpm_W, rel=1e-7)
 
 
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_power_of_a_driving_wheel(tmp_path: Path, gear: str) -> None:
+    """The wheel drives: 170 N·m on it are the input, on the pinion what is left of it; the loss is the same but for the
+    share of the torque, 2 %."""
+    (row,) = rows(tmp_path / "one", f"load.on={gear}", "load.driving=wheel")
+    delivered = row.input_at_1000_rpm_W - (row.loss_at_1000_rpm_W if gear == "pinion" else 0.0)
+    assert delivered == pytest.approx(17802.3584, rel=1e-7)
+    (other,) = rows(tmp_path / "other", f"load.on={gear}")
+    assert row.loss_percent == pytest.approx(other.loss_percent, rel=0.02)
+
+
 def test_tooth_loss_factor_stands_beside_the_formula(tmp_path: Path) -> None:
     """Loss over μ; within a tenth of Ohlendorf's 0.0986 for equal shares. Without friction it is not known."""
     without, with_friction = rows(tmp_path, "contact.friction=[0.0,0.3]")

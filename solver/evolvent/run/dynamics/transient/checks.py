@@ -7,6 +7,7 @@ from evolvent.scene.backlash import unnamed_backlash
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import SceneError
+from evolvent.scene.vibration_limits import sense_of_transient
 from evolvent_meshes.errors import InputError
 
 UNUSED = "series_stiffness_N_per_um", "ground_damping_ratio", "mesh"
@@ -24,8 +25,11 @@ def transient_section(scene: Scene) -> TransientSection:
 
 
 def require_possible(scene: Scene) -> None:
-    """Raises SceneError where a transient from rest has no known backlash, as its impact separates the flanks, or where
-    there are too many natural modes. From statics no backlash is needed as long as the flanks do not separate."""
+    """Raises SceneError where the wheel drives; where a transient from rest has no known backlash, as its impact
+    separates the flanks; or where there are too many natural modes. From statics no backlash is needed as long as the
+    flanks do not separate."""
+    if problem := sense_of_transient(scene.load):
+        raise SceneError([problem])
     given, section = None if scene.dynamics is None else scene.dynamics.backlash_um, transient_section(scene)
     if section.start == "rest" and (problem := unnamed_backlash(scene.gear_pair(), given)):
         raise SceneError([problem])

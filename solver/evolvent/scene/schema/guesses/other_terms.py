@@ -36,6 +36,10 @@ OTHER_TERMS: tuple[Term, ...] = (
     Term("application_factor k_a ka overload_factor load_factor service_factor", ("load.torque_Nm",),
          "multiply the torque by the factor", "ISO 6336-1"),
     Term("torque_on loaded_gear torque_gear load.gear load.side", ("load.on",)),
+    Term("driver driving_gear driving_member driven driven_gear drive_gear input_gear input input_on output_gear "
+         "driving_wheel power_flow load.direction sweep.direction sense_of_rotation direction_of_rotation "
+         "rotation_direction rotation_sense turning_direction load.reverse reversed load.coast speed_increaser step_up",
+         ("load.driving",), "the flanks that bear are the same"),
     Term("mu friction friction_coefficient coefficient_of_friction cof coulomb friction_factor contact.coefficient "
          "reibungszahl static_friction dynamic_friction", ("contact.friction",), source=FEM),
     Term("penalty penalty_factor penalty_stiffness contact_stiffness nitsche gamma contact_tolerance augmentation "

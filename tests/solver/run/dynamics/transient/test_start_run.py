@@ -12,7 +12,7 @@ import pytest
 
 from evolvent.run.dynamics.transient.summary_lines import summary_lines
 from evolvent.run.kinds.transient import Transient
-from evolvent.scene.scene import Scene, load_scene
+from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
 from tests.support.computing.quiet import quietly
@@ -100,3 +100,10 @@ def test_an_inertia_below_the_body_is_refused(tmp_path: Path) -> None:
     light = scene("dynamics.pinion_inertia_kg_m2=3e-3", "transient.modes_per_harmonic=1")
     with pytest.raises(InputError, match=r"pinion_inertia_kg_m2: wanted at least that of the gear's body, 0\.0073"):
         quietly(Transient.of(light), tmp_path / "x")
+
+
+def test_a_wheel_that_drives_is_refused(tmp_path: Path) -> None:
+    """Before anything is written, with what computes it."""
+    with pytest.raises(SceneError, match=r'load\.driving: found "wheel"; allowed: "pinion" for evolvent transient'):
+        quietly(Transient.of(scene("load.driving=wheel")), tmp_path / "x")
+    assert not (tmp_path / "x").exists()

@@ -213,6 +213,8 @@ def _difference(gears: GearModel, pitch: PitchSolution) -> str:
     """Words on a pitch that was solved with other gears."""
     if pitch.pair != gears.pair:
         return "a pitch of another gear pair"
+    if pitch.load.driving is not gears.load.driving:
+        return f"a pitch that the {pitch.load.driving.label} drives"
     one, other = (
         f"{1e-3 * gears.width_factor * load.torque:.5g} N·m on the {load.on.label}" for load in (pitch.load, gears.load)
     )

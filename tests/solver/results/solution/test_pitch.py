@@ -10,7 +10,7 @@ import pytest
 from mpi4py import MPI
 from PIL import Image
 
-from evolvent.gears import MeshSettings, PitchSolution, condense, solve_pitch
+from evolvent.gears import Member, MeshSettings, PitchSolution, condense, solve_pitch
 from evolvent.results.solution.pitch_picture import pitch_figure
 from evolvent_meshes.errors import InputError
 from tests.support.gears_api_curve import he_problem
@@ -51,6 +51,24 @@ def test_the_picture_shows_the_closed_pitch(pitch: PitchSolution, tmp_path: Path
         np.testing.assert_allclose(x, 7.2 / 8 * np.arange(9), atol=1e-12)
         np.testing.assert_allclose(y, [*values, values[0]], rtol=1e-12)
         np.testing.assert_allclose(np.asarray(hollow.get_xdata()), x[:8][pitch.tip_edge])
+
+
+def test_pitch_of_a_driving_wheel(pitch: PitchSolution) -> None:
+    """The wheel drives under the same torque on the pinion, which is the output now. Exact: rotations ascend as before;
+    the input on the wheel exceeds it by the loss, 0.1 % of it; the loss is that of the driving pinion within 3 %."""
+    problem = replace(he_problem(), mesh=MeshSettings("quick", order=1), driving=Member.WHEEL)
+    wheel = solve_pitch(condense(problem, MPI.COMM_SELF), 0.1, 8, MPI.COMM_SELF)
+    assert np.array_equal(wheel.angles, pitch.angles)
+    output, given = wheel.torques.sum(axis=0)
+    assert (given - output) / given == pytest.approx(wheel.loss_ratio, abs=1e-3)
+    assert wheel.loss_ratio == pytest.approx(pitch.loss_ratio, rel=0.03) and wheel.loss_ratio > 5e-3
+    assert wheel.transmission_error != pytest.approx(pitch.transmission_error, rel=1e-3)
+
+
+def test_gear_that_drives_is_a_member() -> None:
+    """A name is refused with the gears that there are."""
+    with pytest.raises(InputError, match="driving"):
+        replace(he_problem(), driving="wheel")  # type: ignore[arg-type]
 
 
 def test_other_endings_are_refused(pitch: PitchSolution, tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ from evolvent.scene.scene import load_scene
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.strength.fatigue.flank_fatigue import passage
 from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.member import Member
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import QUIET
 from tests.support.recorded_tables import assert_same_rows, columns_of, tables_of
@@ -154,11 +155,15 @@ def test_pitches_that_cannot_be_are_refused(gears: GearModel) -> None:
 
 
 def test_pitches_of_other_gears_are_refused(gears: GearModel) -> None:
-    """Gears under another torque, another pair: neither has these pitches. Right: refused with both torques."""
+    """Gears under another torque, that the wheel drives, another pair: none has these pitches. Right: refused with both
+    torques, with the gear that drives."""
     pitches = solve_pitches(gears, [0.1], positions=2)
     heavier = replace(gears, load=replace(gears.load, torque=2.0 * gears.load.torque))
     with pytest.raises(InputError, match="found a pitch under 170 N·m on the pinion beside gears under 340 N·m on the"):
         pitch_fatigue(heavier, pitches)
+    driven = replace(gears, load=replace(gears.load, driving=Member.WHEEL))
+    with pytest.raises(InputError, match="found a pitch that the pinion drives"):
+        pitch_fatigue(driven, pitches)
     with pytest.raises(InputError, match="found a pitch of another gear pair"):
         pitch_fatigue(replace(gears, pair=replace(gears.pair, centre_distance=150.05)), pitches)
 

@@ -159,7 +159,7 @@ def _pair_rows(pair: GearPair) -> list[Row]:
 
 
 def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
-    start, end = estimate.pair.path_of_contact
+    start, end = estimate.pair.path_of_contact[:: Member.named(scene.load.driving).sign]
     shortest, mean, longest = estimate.line_lengths
 
     def pressure(name: str, xi: float, length: float | None = None) -> Row:

@@ -175,7 +175,12 @@ def test_webs_and_where_bores_are_held_are_told() -> None:
 
 
 def test_driving_wheel_is_reported() -> None:
-    """The gear that drives, the sense of rotation and the flanks that bear; nothing of it where the pinion drives."""
+    """The gear that drives, the sense of rotation and the flanks that bear; nothing of it where the pinion drives. The
+    engagement starts where it ended."""
+    plain, reverse = (text_of("yang2022", *settings) for settings in ((), ("load.driving=wheel",)))
+    start, end = (r"^  p0 at the start of engagement.* (\S+)$", r"^  p0 at the end of engagement.* (\S+)$")
+    (first, last), other = ([re.findall(place, text, re.M) for place in (start, end)] for text in (plain, reverse))
+    assert first != last and other == [last, first]
     text = overview(spur_scene("load.driving=wheel"))
     assert re.search(r"^  driving gear +wheel, the pinion turns clockwise seen from z > 0$", text, re.MULTILINE)
     assert re.search(r"^  flanks that bear, on both gears +left ones seen from z > 0", text, re.MULTILINE)

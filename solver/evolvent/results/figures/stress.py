@@ -27,6 +27,7 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import few_positions
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Bools, Floats
+from evolvent_meshes.gears.member import Member
 
 STRESS = "maximum contact stress [MPa]"
 TOOTH_ANGLE = "pinion rotation [°]   (0: tooth pair in contact at the pitch point, mid-face)"
@@ -248,7 +249,8 @@ def _engagement_subtitle(run: RunData, curves: Sequence[Engagement], cross: floa
     if len(curves) == 1:
         return peak + "."
     angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))
-    before, after = (signed(100 * float(np.nanmean(change[side]))) for side in (angle < 0.0, angle > 0.0))
+    passed = Member.named(run.scene.load.driving).sign * angle
+    before, after = (signed(100 * float(np.nanmean(change[side]))) for side in (passed < 0.0, passed > 0.0))
     where = f"the curves cross at {signed(cross)}°" if np.isfinite(cross) else "the curves do not cross"
     means = f"μ = {highest.friction:g} changes it by {before} % on average before the pitch point, {after} % after it"
     return f"{peak}; {means}" + ("." if few_cells_across(run) else f"; {where}.")

@@ -20,8 +20,8 @@ def loss_percent(_: RunData, solved: SolvedPosition) -> float:
 
 
 def pitch_loss_percent(lost: ArrayLike, given: ArrayLike) -> Floats:
-    """Friction work over the input work of a pitch [%], from friction powers (n, ...) and pinion torques (n, ...)
-    at its n positions, both in N·mm as of `PositionResult`."""
+    """Friction work over the input work of a pitch [%], from friction powers and input powers (n, ...) at its n
+    positions, both in N·mm as of `PositionResult`."""
     return np.asarray(100.0 * np.sum(lost, axis=0) / np.sum(given, axis=0))
 
 

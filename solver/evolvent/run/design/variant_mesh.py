@@ -18,7 +18,6 @@ from evolvent.gears.unloaded_error import RigidFlanks
 from evolvent.results.position_figures import pitch_loss_percent
 from evolvent.scene.gear_pair import ImpossibleGears
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 PEAK_TO_PEAK, FACE_LOAD, PRESSURE, LOST, FIRST_HARMONIC, ON_EDGES = range(6)
@@ -79,5 +78,5 @@ class VariantMesh:
         forces = np.array(self.torques) / gears.base_radius / gears.width_factor
         found = [[LineResult.of(each, force, self.friction, gears.free) for force in forces] for each in positions]
         lost = [[each.friction_power for each in row] for row in found]
-        given = [[each.forces[Member.PINION] * gears.pair.pinion.base_radius for each in row] for row in found]
+        given = [[each.forces[gears.driving] * gears.pair.pinion.base_radius for each in row] for row in found]
         return pitch_loss_percent(lost, given)

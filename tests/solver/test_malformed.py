@@ -19,6 +19,7 @@ from evolvent_meshes.mesh.gmsh_io import read_msh
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.malformed.inputs import CHART, CHARTS, OPTIONS, RECORD, RECORDS, SCENE_FILES, TEST
 from tests.support.malformed.scenes import MALFORMED, UNSUPPORTED
+from tests.support.running.scene_effects import setting
 from tests.support.scene_texts import HE, WEAR, YANG
 
 MESSAGE = re.compile(r"(?P<key>.*?): found (?P<found>.*); allowed: (?P<allowed>.+); remedy: (?P<remedy>.+)")
@@ -253,7 +254,7 @@ def test_check_survives_extreme_numbers(key: str, part: int, folder: Path, capfd
     bases = [["scene.toml", *WEAR]] if key.startswith("wear.") else [["yang.toml"], ["scene.toml", LONG_WAY]]
     for name, *settings in bases:
         for value in EXTREMES[part::PARTS]:
-            overrides = [part for text in (*settings, f"{key}={value}") for part in ("--set", text)]
+            overrides = [part for text in (*settings, setting(key, value)) for part in ("--set", text)]
             status = main(["check", name, *overrides])
             err = capfd.readouterr().err
             assert status in (0, 2), (value, err)

@@ -31,7 +31,7 @@ from evolvent.commands.options import (
 from evolvent.commands.scene_argument import loaded_scene, require, require_room
 from evolvent.fem.parallel.mpi_start import world
 from evolvent.run.kinds.all import KINDS, Kind, kind_of
-from evolvent.scene.part_torque import listed_percents
+from evolvent.scene.load_cases import with_list
 
 # commands import what they need beyond the scene: their help must not wait for PETSc or pyvista
 
@@ -65,8 +65,7 @@ def _command(kind: Kind) -> Command:
             if petsc is not None:
                 os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
             computation = kind_of(kind.name, loaded).load()
-            listed = listed_percents(loaded, percents or (), kind.percents)
-            what = computation.of(loaded, listed) if kind.percents else computation.of(loaded)
+            what = computation.of(with_list(loaded, percents or (), kind.percents) if kind.percents else loaded)
             for each in what.sized:
                 require_room(each, what.command, force, world())
             from evolvent.run.call import Options

@@ -19,10 +19,11 @@ PERCENTS = "load.percents"
 
 def essence(scene: Scene) -> Scene:
     """The scene without the parts that its results do not depend on: title, output, the paths of flank charts, the
-    other torques of a list, and variants of its flanks."""
+    other loads of a list, and variants of its flanks."""
     exact = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in OF_OUTPUT))
     bare = scene.changed("load", percents=()).changed("pinion", flank_csv=None).changed("wheel", flank_csv=None)
-    return bare.model_copy(update={"title": "", "output": OutputSection(), "exact": exact, "design": None})
+    update = {"title": "", "output": OutputSection(), "exact": exact, "design": None, "load_case": ()}
+    return bare.model_copy(update=update)
 
 
 def identity(scene: Scene) -> list[Any]:
@@ -30,7 +31,8 @@ def identity(scene: Scene) -> list[Any]:
     charts. Keys have their first names, so that it is the same in all versions."""
     bare = essence(scene)
     of_load = {"percents"} if bare.load.driving == "wheel" else {"percents", "driving"}
-    values = bare.model_dump(mode="json", exclude={"load": of_load, "design": True})  # first versions had none of them
+    later: dict[str, bool | set[str]] = {"load": of_load, "design": True, "load_case": True}
+    values = bare.model_dump(mode="json", exclude=later)  # as the first versions had none of them
     return [first_names(values), derived_values(bare), *charts(scene)]
 
 
@@ -52,12 +54,19 @@ def differences(kept: Scene, wanted: Scene) -> str:
 def _differing(kept: Scene, wanted: Scene) -> list[str]:
     """Each differing key with both values."""
     there, here = (flat_keys(essence(scene).model_dump()) for scene in (kept, wanted))
-    if kept.load.percents and wanted.load.percents:  # of commands that solve a list of torques
-        there[PERCENTS], here[PERCENTS] = kept.load.percents, wanted.load.percents
+    if (of_kept := _listed(kept)) and (of_wanted := _listed(wanted)):  # of commands that solve a list of loads
+        there, here = there | of_kept, here | of_wanted
     keys = [key for key in {**there, **here} if there.get(key) != here.get(key)]
     values = [f"{key} = {_said(here.get(key))} (kept: {_said(there.get(key))})" for key in keys]
     both = zip(GEARS, charts(kept), charts(wanted))
     return values + [f"another chart as {name}.flank_csv" for name, one, other in both if one != other]
+
+
+def _listed(scene: Scene) -> dict[str, Any]:
+    """Each key of the list of loads that a scene gives, none where it gives no list."""
+    cases = [(number, each.model_dump(exclude_none=True)) for number, each in enumerate(scene.load_case)]
+    found = {f"load_case[{number}].{name}": value for number, values in cases for name, value in values.items()}
+    return found | ({PERCENTS: scene.load.percents} if scene.load.percents else {})
 
 
 def _said(value: Any) -> str:

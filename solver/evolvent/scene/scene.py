@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
-from pydantic import ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
 from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.fem.material import Material
@@ -28,10 +28,11 @@ from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, shown, validation_error
 from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.schema.gears import GearSection, PairSection
+from evolvent.scene.schema.load_cases import LoadCaseSection, list_problem
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
 from evolvent.scene.schema.old_names import Warn, new_sections, unsaid
 from evolvent.scene.schema.output import ExactSection, OutputSection
-from evolvent.scene.schema.section import SceneSection, key
+from evolvent.scene.schema.section import SceneSection, key, listed
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.schema.wear import WearSection
 from evolvent.scene.toml_lines import toml_lines
@@ -62,6 +63,9 @@ class Scene(SceneSection):
     mesh: MeshSection = MeshSection()
     contact: ContactSection = ContactSection()
     load: LoadSection
+    load_case: Annotated[tuple[LoadCaseSection, ...], BeforeValidator(listed)] = Field(
+        default=(), description="a list of loads"
+    )
     sweep: SweepSection = SweepSection()
     wear: WearSection | None = None
     dynamics: DynamicsSection | None = None
@@ -76,6 +80,12 @@ class Scene(SceneSection):
     def _keys_have_an_effect(self) -> Self:
         if problems := without_main_key(self):
             raise validation_error(*problems)
+        return self
+
+    @model_validator(mode="after")
+    def _loads_are_one_list(self) -> Self:
+        if problem := list_problem(self.load_case, self.load.percents):
+            raise validation_error(problem)
         return self
 
     @model_validator(mode="after")

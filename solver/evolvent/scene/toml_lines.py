@@ -8,38 +8,41 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from evolvent.scene.schema.errors import section_of
+from evolvent.scene.schema.errors import is_listed, section_of
 
 
-def toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "") -> Iterator[str]:
-    """Lines of a section in TOML: its keys with their meaning, then its subsections.
+def toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "", header: str = "") -> Iterator[str]:
+    """Lines of a section in TOML: its keys with their meaning, then its subsections, several where they are a list.
 
     derived: dotted key -> default that is derived from other keys, written as a comment. name: dotted, of the section;
-    empty for the scene.
+    empty for the scene. header: line above its keys; empty for the scene.
     """
-    if name:
-        yield f"\n[{name}]"
+    if header:
+        yield f"\n{header}"
     subsections = []
     for key_name, field in type(section).model_fields.items():
         value, dotted = getattr(section, key_name), f"{name}.{key_name}" if name else key_name
         if optional := section_of(field):
-            subsections.append((dotted, value if value is not None else optional))
+            subsections.append((dotted, f"[[{dotted}]]" if is_listed(field) else f"[{dotted}]", value, optional))
         elif value is not None:
             yield f"{key_name} = {_toml_value(value)}  # {field.description}"
         elif dotted in derived:
             yield f"# {key_name} = {_toml_value(derived[dotted])}  # {field.description}"
         else:
             yield f"# {key_name}: not given  # {field.description}"
-    for subname, value in subsections:
-        yield from toml_lines(value, derived, subname) if isinstance(value, BaseModel) else _not_given(value, subname)
+    for subname, above, value, optional in subsections:
+        for each in value if isinstance(value, tuple) else () if value is None else (value,):
+            yield from toml_lines(each, derived, subname, above)
+        if value in (None, ()):
+            yield from _not_given(optional, subname, above)
 
 
-def _not_given(section: type[BaseModel], name: str) -> Iterator[str]:
+def _not_given(section: type[BaseModel], name: str, header: str) -> Iterator[str]:
     """The lines of an optional section that the scene does not have."""
-    yield f"\n# [{name}]: not given"
+    yield f"\n# {header}: not given"
     for key_name, field in section.model_fields.items():
         if inner := section_of(field):
-            yield from _not_given(inner, f"{name}.{key_name}")
+            yield from _not_given(inner, f"{name}.{key_name}", f"[{name}.{key_name}]")
         else:
             yield f"# {key_name}: not given  # {field.description}"
 

@@ -17,7 +17,7 @@ from evolvent.run.design.ranking import Ranking
 from evolvent.run.dynamics.speeds import map_list, sweep_list
 from evolvent.run.dynamics.vibration import accuracy
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import listed_percents
+from evolvent.scene.load_cases import load_cases, with_list
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent.scene.skips import wanted_output
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, flank_fatigue
@@ -81,7 +81,8 @@ OTHERS = {
     "mesh.elements_per_contact_width": "2.5", "mesh.shape": '"tetrahedron"', "mesh.order": "1",
     "contact.friction": "0.1", "load.torque_Nm": "90.0", "load.on": '"wheel"', "load.driving": '"wheel"',
     "load.mesh_torques_Nm": "[40.0, 160.0]",
-    "load.percents": "[50.0, 100.0]",
+    "load.percents": "[50.0, 100.0]", "load_case.name": '"b"', "load_case.torque_Nm": "60.0",
+    "load_case.speed_rpm": "1500.0", "load_case.share_of_life": "1.0", "load_case.misalignment_um": "5.0",
     "sweep.positions": "8", "wear.cycles": "2e6", "wear.pinion_mm2_per_N": "2e-10", "wear.wheel_mm2_per_N": "1e-10",
     "wear.report_at_cycles": "[1e5]", "wear.tolerance": "0.1", "wear.blocks": '"explicit"',
     "wear.first_block_cycles": "2e4", "wear.refresh_um": "3.0", "dynamics.speed_rpm": "[500.0, 9000.0]",
@@ -122,6 +123,16 @@ def other_value(key: str) -> str:
     value = OF_GEARS[name]
     assert value is not None
     return value
+
+
+def setting(key: str, value: str) -> str:
+    """Override of a dotted key by a value in TOML: of a load case, in a list of one that is not valid without its name
+    and torque."""
+    section, _, name = key.rpartition(".")
+    if section != "load_case":
+        return f"{key}={value}"
+    keys = {"name": '"a"', "torque_Nm": "40.0", name: value}
+    return f"load_case=[{{{', '.join(f'{each} = {given}' for each, given in keys.items())}}}]"
 
 
 def _gears(scene: Scene) -> object:
@@ -201,8 +212,8 @@ def _output(scene: Scene) -> object:
 
 
 def _torques(scene: Scene) -> object:
-    """Torques of a list."""
-    return listed_percents(scene)
+    """Loads of a list."""
+    return load_cases(with_list(scene))
 
 
 CONSEQUENCES: tuple[Callable[[Scene], object], ...] = (

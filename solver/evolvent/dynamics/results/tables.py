@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +30,8 @@ class ExcitationRow:
 
     pinion_angle_deg: float
     """Rotation of the pinion; 0: tooth pair 0 touches at the pitch point, in the mid-face section."""
+    case: str
+    """Names of the load cases with this torque, or its part of the scene's torque; empty where it has none."""
     torque_Nm: float
     """Torque on the gear that the scene names."""
     mesh_force_N: float
@@ -59,6 +61,8 @@ class HarmonicRow:
 
     quantity: str
     """Name of the quantity, as in excitation.csv."""
+    case: str
+    """Names of the load cases with this torque, or its part of the scene's torque; empty where it has none."""
     torque_Nm: float
     """Torque on the gear that the scene names; 0 for the unloaded transmission error."""
     mean: float
@@ -85,15 +89,19 @@ class HarmonicRow:
 EXCITATION, HARMONICS = Table("excitation.csv", ExcitationRow), Table("harmonics.csv", HarmonicRow)
 
 
-def excitation_rows(excitation: MeshExcitation, companion: CoarseExcitation = NO_COMPANION) -> list[ExcitationRow]:
-    """Rows of excitation.csv, the lightest torque first."""
+def excitation_rows(
+    excitation: MeshExcitation, companion: CoarseExcitation = NO_COMPANION, cases: Sequence[str] = ()
+) -> list[ExcitationRow]:
+    """Rows of excitation.csv, the lightest torque first. cases: (m,) names of the torques; empty where they have none.
+    """
     loaded, unloaded, rows = excitation.loaded, unloaded_curve(excitation).values, []
-    for torque, force, curves in zip(loaded.torques, loaded.forces, pitch_curves(excitation, companion)):
+    known = loaded.torques, loaded.forces, pitch_curves(excitation, companion), _names(excitation, cases)
+    for torque, force, curves, case in zip(*known):
         error, tangent, secant = curves[LOADED], curves[TANGENT], curves[SECANT]
         of_error, of_tangent, of_secant = error.bars, tangent.bars, secant.bars
         for k, angle in enumerate(np.degrees(loaded.angles)):
             rows.append(ExcitationRow(
-                pinion_angle_deg=float(angle), torque_Nm=1e-3 * float(torque), mesh_force_N=float(force),
+                pinion_angle_deg=float(angle), case=case, torque_Nm=1e-3 * float(torque), mesh_force_N=float(force),
                 unloaded_transmission_error_um=float(unloaded[k]), transmission_error_um=float(error.values[k]),
                 transmission_error_um_error=float(of_error[k]), tangent_stiffness_N_per_um=float(tangent.values[k]),
                 tangent_stiffness_N_per_um_error=float(of_tangent[k]),
@@ -102,22 +110,30 @@ def excitation_rows(excitation: MeshExcitation, companion: CoarseExcitation = NO
     return rows
 
 
-def harmonic_rows(excitation: MeshExcitation, companion: CoarseExcitation = NO_COMPANION) -> list[HarmonicRow]:
+def harmonic_rows(
+    excitation: MeshExcitation, companion: CoarseExcitation = NO_COMPANION, cases: Sequence[str] = ()
+) -> list[HarmonicRow]:
     """Rows of harmonics.csv: all quantities of excitation.csv that vary over the pitch, each with as many harmonics as
-    its positions hold, at most five."""
-    rows = list(_harmonics(NO_TORQUE, unloaded_curve(excitation)))
-    for torque, curves in zip(excitation.loaded.torques, pitch_curves(excitation, companion)):
+    its positions hold, at most five. cases: as of `excitation_rows`."""
+    rows = list(_harmonics("", NO_TORQUE, unloaded_curve(excitation)))
+    curves_of_each = pitch_curves(excitation, companion)
+    for torque, curves, case in zip(excitation.loaded.torques, curves_of_each, _names(excitation, cases)):
         for curve in curves.values():
-            rows += _harmonics(1e-3 * float(torque), curve)
+            rows += _harmonics(case, 1e-3 * float(torque), curve)
     return rows
 
 
-def _harmonics(torque: float, curve: PitchCurve) -> Iterator[HarmonicRow]:
+def _names(excitation: MeshExcitation, cases: Sequence[str]) -> Sequence[str]:
+    """Name of each torque of an excitation, the heaviest of which may have been left out. cases: of all of them."""
+    return cases or [""] * len(excitation.loaded.torques)
+
+
+def _harmonics(case: str, torque: float, curve: PitchCurve) -> Iterator[HarmonicRow]:
     mean, size = float(curve.values.mean()), float(np.ptp(curve.values))
     parts = *curve.harmonics, curve.amplitude_errors
     for r, (amplitude, phase, error) in enumerate(zip(*parts), 1):
         yield HarmonicRow(
-            quantity=curve.quantity, torque_Nm=torque, mean=mean, mean_error=curve.mean_error, peak_to_peak=size,
-            peak_to_peak_error=curve.peak_to_peak_error, harmonic=r, amplitude=float(amplitude),
+            quantity=curve.quantity, case=case, torque_Nm=torque, mean=mean, mean_error=curve.mean_error,
+            peak_to_peak=size, peak_to_peak_error=curve.peak_to_peak_error, harmonic=r, amplitude=float(amplitude),
             amplitude_error=float(error), phase_deg=float(np.degrees(phase)),
         )

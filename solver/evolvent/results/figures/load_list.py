@@ -20,14 +20,14 @@ PANELS = (
 
 
 def loads_figure(results: Sequence[LoadResult]) -> Figure:
-    """Figure of the transmission error over the pitch under each torque, and of three figures over the torque, a line
+    """Figure of the transmission error over the pitch under each load, and of three figures over the torque, a line
     per friction coefficient. results: the lightest torque first, as of `load_results`."""
     frictions = sorted({each.row.friction for each in results})
     torques = sorted({each.row.torque_Nm for each in results})
     figure = sheet(
         "Transmission error, contact pressure and mesh stiffness against the torque",
-        f"{len(torques)} torques from {torques[0]:.4g} to {torques[-1]:.4g} N·m on the same condensed gears; where the "
-        "flanks have levels, each torque takes as many as it needs.",
+        f"{len({each.row.case for each in results})} loads from {torques[0]:.4g} to {torques[-1]:.4g} N·m on the same "
+        "condensed gears; where the flanks have levels, each torque takes as many as it needs.",
         (11.0, 7.6),
     )
     grid = figure.subplots(2, 2)
@@ -69,10 +69,11 @@ def _draw_kinks(axes: Axes, results: Sequence[LoadResult], frictions: Sequence[f
 
 
 def _draw_curves(axes: Axes, results: Sequence[LoadResult]) -> None:
-    """Transmission error over the pitch, minus its mean, under each torque."""
+    """Transmission error over the pitch, minus its mean, under each load."""
     for each, colour in zip(results, torque_colours(len(results))):
         varying = np.array(each.transmission_error)
-        axes.plot(each.angle, varying - varying.mean(), color=colour, marker=".", label=f"{each.row.torque_Nm:.4g} N·m")
+        label = f"{each.row.case}, {each.row.torque_Nm:.4g} N·m"
+        axes.plot(each.angle, varying - varying.mean(), color=colour, marker=".", label=label)
     axes.set_xlabel("pinion rotation [°]")
     axes.set_ylabel("transmission error minus its mean [µm]")
     title = f"μ = {results[0].row.friction:g}"

@@ -1,9 +1,8 @@
-"""The figures of a load list: one line per torque and friction coefficient, from the summaries of its runs."""
+"""The figures of a load list: one line per load and friction coefficient, from the summaries of its runs."""
 
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -11,6 +10,8 @@ from statistics import fmean
 from typing import Any
 
 from evolvent.results.tables.table import Table
+from evolvent.scene.load_cases import LoadCase, load_cases
+from evolvent.scene.scene import kept_scene
 
 ERROR = "_error"
 """End of the name of a column with the estimated error of a figure."""
@@ -18,10 +19,18 @@ ERROR = "_error"
 
 @dataclass(frozen=True)
 class LoadRow:
-    """A line of loads.csv: a torque and a friction coefficient."""
+    """A line of loads.csv: a load and a friction coefficient."""
 
+    case: str
+    """Name of the load case, or the part of the scene's torque."""
     torque_Nm: float
     """Torque on the gear that the scene names."""
+    speed_rpm: float
+    """Speed of the pinion in the load case, without effect on a run; NaN where it is not given."""
+    share_of_life: float
+    """Share of the life in the load case; NaN where it is not given."""
+    misalignment_um: float
+    """Opening of the flanks over the face width, `pair.misalignment_um` or that of the load case."""
     friction: float
     """Friction coefficient μ."""
     transmission_error_mean_um: float
@@ -71,13 +80,16 @@ class LoadRow:
 
 
 LOADS = Table("loads.csv", LoadRow)
-RUNS = "load_{}_percent"
-"""Name of the folder of a run below that of the table, with its part of the torque."""
+
+
+def run_folder(case: LoadCase) -> str:
+    """Name of the folder of a run below that of the table."""
+    return f"load_{case.label}"
 
 
 @dataclass(frozen=True)
 class LoadResult:
-    """A run under one torque at one friction coefficient."""
+    """A run under one load at one friction coefficient."""
 
     row: LoadRow
     """Row of the run in loads.csv."""
@@ -95,28 +107,34 @@ class LoadRuns:
     """Name of the table's file."""
 
     def read(self, folder: Path) -> list[LoadResult]:
-        """The runs in folders below that of the table, the lightest torque first. Raises ArchiveError, OSError."""
-        torques = [row.torque_Nm for row in LOADS.read(folder)]
-        every = load_results(path for path in folder.glob(RUNS.format("*")) if (path / "summary.json").exists())
-        return [each for each in every if any(math.isclose(each.row.torque_Nm, torque) for torque in torques)]
+        """The runs in folders below that of the table, the lightest load first. Raises ArchiveError, SceneError,
+        OSError."""
+        named, listed = {row.case for row in LOADS.read(folder)}, load_cases(kept_scene(folder / "scene.toml"))
+        return load_results(folder, [case for case in listed if case.name in named])
 
 
-def load_results(folders: Iterable[Path]) -> list[LoadResult]:
-    """Rows and transmission errors of finished runs, from their summary.json, the lightest torque first. Raises
-    OSError."""
-    read = [json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in folders]
-    read.sort(key=lambda summary: float(summary["scene"]["load"]["torque_Nm"]))
-    return [_result(summary, row) for summary in read for row in summary["frictions"]]
+def load_results(folder: Path, cases: Iterable[LoadCase]) -> list[LoadResult]:
+    """Rows and transmission errors of finished runs below a folder, from their summary.json, in the order of the loads.
+    Raises OSError."""
+    found = []
+    for case in cases:
+        summary = json.loads((folder / run_folder(case) / "summary.json").read_text(encoding="utf-8"))
+        found += [_result(case, summary, row) for row in summary["frictions"]]
+    return found
 
 
-def _result(summary: Mapping[str, Any], row: Mapping[str, Any]) -> LoadResult:
+def _result(case: LoadCase, summary: Mapping[str, Any], row: Mapping[str, Any]) -> LoadResult:
     """Result of a run at one of its friction coefficients."""
     positions = [each for each in summary["positions"] if each["friction"] == row["friction"]]
     keys = "pinion_angle_deg", "transmission_error_um"
     angle, error = (tuple(float(each[key]) for each in positions) for key in keys)
     bars = row["estimated_error"] or {}
     known = {
-        "torque_Nm": summary["scene"]["load"]["torque_Nm"],
+        "case": case.name,
+        "torque_Nm": case.torque_Nm,
+        "speed_rpm": _number(case.speed_rpm),
+        "share_of_life": _number(case.share_of_life),
+        "misalignment_um": case.misalignment_um,
         "friction": row["friction"],
         "transmission_error_mean_um": fmean(error),
         "max_pressure_at_zone_end": row["max_pressure_at_zone_end"],

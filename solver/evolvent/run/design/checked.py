@@ -27,6 +27,8 @@ class BestRow:
     """1: the best variant, 2: the next one, ...; 0: the scene as it stands, where it is not one of them."""
     variant: int
     """Number of the variant, as in design.csv; 0 is the scene as it stands."""
+    case: str
+    """Names of the load cases with this torque, or its part of the scene's torque."""
     torque_Nm: float
     """Torque on the gear that load.on names."""
     transmission_error_peak_to_peak_um: float
@@ -131,15 +133,15 @@ class Checked:
                 return max(pairs)
         return math.nan, math.nan
 
-    def rows(self, torques: Sequence[float]) -> Iterator[BestRow]:
-        """A row for each torque [N·mm], ascending."""
+    def rows(self, torques: Sequence[float], cases: Sequence[str]) -> Iterator[BestRow]:
+        """A row for each torque [N·mm], ascending. cases: their names."""
         line, resolved = (each.figures(len(torques)) for each in (self.line, self.resolved))
-        for j, torque in enumerate(torques):
+        for j, (torque, case) in enumerate(zip(torques, cases)):
             yield BestRow(
-                self.rank, self.variant, 1e-3 * torque, *line["error"][j], *line["stiffness"][j], *line["face_load"][j],
-                *line["pressure"][j], *line["loss"][j], *line["harmonic"][j], *resolved["error"][j],
-                *resolved["stiffness"][j], *resolved["loss"][j], *resolved["harmonic"][j], self._left_out(j),
-                *self._band(j),
+                self.rank, self.variant, case, 1e-3 * torque, *line["error"][j], *line["stiffness"][j],
+                *line["face_load"][j], *line["pressure"][j], *line["loss"][j], *line["harmonic"][j],
+                *resolved["error"][j], *resolved["stiffness"][j], *resolved["loss"][j], *resolved["harmonic"][j],
+                self._left_out(j), *self._band(j),
             )
 
     def _known(self, torque: int) -> Floats:

@@ -58,7 +58,8 @@ class SolvedExcitation:
         pair, said = loads.problem.pair, (*warnings, *self.warnings)
         facts = excitation_facts(scene.title, scene.mesh.level, *solved, pair, (pinion, wheel), said)
         return [
-            EXCITATION.of(excitation_rows(*solved)), HARMONICS.of(harmonic_rows(*solved)), EXCITATION_FACTS.of(facts)
+            EXCITATION.of(excitation_rows(*solved, loads.cases)), HARMONICS.of(harmonic_rows(*solved, loads.cases)),
+            EXCITATION_FACTS.of(facts),
         ]
 
 

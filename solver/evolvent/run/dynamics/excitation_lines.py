@@ -25,8 +25,8 @@ def excitation_lines(folder: Path) -> Iterator[str]:
     for torque in dict.fromkeys((min(torques), max(torques))):
         error, stiffness = (_row(rows, quantity, torque) for quantity in (LOADED, TANGENT))
         yield (
-            f"{torque:.4g} N·m: transmission error {_peak_to_peak(error)} µm peak to peak, tangent stiffness "
-            f"{plus_minus(stiffness.mean, stiffness.mean_error, 1)} N/µm in the mean"
+            f"{error.case}, {torque:.4g} N·m: transmission error {_peak_to_peak(error)} µm peak to peak, tangent "
+            f"stiffness {plus_minus(stiffness.mean, stiffness.mean_error, 1)} N/µm in the mean"
         )
     facts = EXCITATION_FACTS.read(folder)
     figures = (
@@ -38,7 +38,7 @@ def excitation_lines(folder: Path) -> Iterator[str]:
         for words, value, error, digits in figures if value is not None
     ]
     if known:
-        yield f"{max(torques):.4g} N·m, line contact: {', '.join(known)}"
+        yield f"{error.case}, {torque:.4g} N·m, line contact: {', '.join(known)}"
 
 
 def large_bars(rows: Sequence[HarmonicRow]) -> Iterator[str]:

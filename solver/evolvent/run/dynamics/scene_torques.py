@@ -16,8 +16,9 @@ from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import listed_percents, under_torque, with_percents
+from evolvent.scene.load_cases import LoadCase, load_cases, parts_of_torque, under_torque, with_list
 from evolvent.scene.scene import Scene
+from evolvent.scene.schema.errors import InputProblem, SceneError, shown
 
 NARROWEST = 0.35
 """Elements across the contact width from which on error bars hold nine errors in ten: at level quick from 5 % of the
@@ -32,6 +33,8 @@ class SceneTorques:
     """Scene without wear, under the torque that the meshes are sized for."""
     torques: tuple[float, ...]
     """(m,) torques, ascending [N·mm]."""
+    cases: tuple[str, ...]
+    """(m,) names of the loads: of the load cases with this torque, or the part of the scene's torque."""
 
     @cached_property
     def problem(self) -> GearProblem:
@@ -69,22 +72,36 @@ class SceneTorques:
 
 
 def listed_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:
-    """The scene under torques of a list: those given in percent of its own or, without any, those that it lists. Raises
-    SceneError where one of them is refused."""
-    listed = listed_percents(scene, percents)
-    return scene_torques(with_percents(scene, listed), listed)
+    """The scene under a list of loads: parts of its torque that are given [%] or, without any, those that it lists.
+    Raises SceneError where one of them is refused, or for loads of different misalignment."""
+    listed = with_list(scene, percents)
+    cases = load_cases(listed)
+    misalignments = dict.fromkeys(case.misalignment_um for case in cases)
+    if len(misalignments) > 1:
+        found, allowed = shown(list(misalignments)), "one misalignment for all loads of a mesh"
+        remedy = "take a scene for each misalignment, or `evolvent loads` or `losses`, which take all of them"
+        raise SceneError([InputProblem("load_case.misalignment_um", found, allowed, remedy)])
+    return _under(listed.changed("pair", misalignment_um=cases[0].misalignment_um), cases)
 
 
 def scene_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:
-    """The scene under parts of its torque. Meshes are sized for its own torque or, where this lies outside the list,
-    for the nearest one of that; for lighter ones where the scene says so (`load.mesh_torques_Nm`).
+    """The scene under parts of its torque. percents: different ones. Raises SceneError where one is refused."""
+    return _under(scene, parts_of_torque(scene, sorted(percents)))
 
-    percents: different ones. Raises SceneError where one of the torques is refused.
-    """
-    ascending = sorted(percents)
-    torques = [scene.load.torque_Nm * percent / 100.0 for percent in ascending]
+
+def _under(scene: Scene, cases: Sequence[LoadCase]) -> SceneTorques:
+    """The scene under some loads, the lightest first; those of one torque are one. Meshes are sized for its own torque
+    or, where this lies outside the list, for the nearest one of that; for lighter ones where the scene says so
+    (`load.mesh_torques_Nm`). Raises SceneError where one of the torques is refused."""
+    names: dict[float, list[str]] = {}
+    for case in cases:
+        names.setdefault(case.torque_Nm, []).append(case.name)
+    torques = list(names)
     for torque in (torques[0], torques[-1]):  # the limits of a torque are those of a range
         under_torque(scene, torque)
     if scene.load.mesh_torques_Nm is None:
         scene = under_torque(scene, min(max(scene.load.torque_Nm, torques[0]), torques[-1]))
-    return SceneTorques(scene.model_copy(update={"wear": None}), tuple(1e3 * torque for torque in torques))
+    return SceneTorques(
+        scene.model_copy(update={"wear": None}), tuple(1e3 * torque for torque in torques),
+        tuple(", ".join(each) for each in names.values()),
+    )

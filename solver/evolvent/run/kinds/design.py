@@ -33,7 +33,7 @@ from evolvent.run.design.variant_mesh import VariantMesh
 from evolvent.run.dynamics.scene_torques import SceneTorques, listed_torques
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.line_level import LINE
-from evolvent.scene.part_torque import under_torque
+from evolvent.scene.load_cases import under_torque
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.design import LOSS, DesignSection, expanded
 from evolvent.scene.schema.errors import NOTHING, InputProblem, SceneError
@@ -83,7 +83,8 @@ class Design(Computation[SolvedDesign]):
 
     @classmethod
     def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
-        """Variants of a scene under parts of its torque. Raises SceneError where one of them is refused."""
+        """Variants of a scene under parts of its torque or the loads that it lists. Raises SceneError where one of them
+        is refused, or for loads of different misalignment."""
         loads = listed_torques(scene, percents)
         return cls(loads.scene, loads)
 
@@ -179,8 +180,8 @@ class Design(Computation[SolvedDesign]):
 
     def results(self, call: Call, solved: SolvedDesign) -> Results:
         """Tables of all variants and of the best ones, and the scene with the best one."""
-        torques, space = self.loads.torques, self.space
-        best = [row for each in solved.checked for row in each.rows(torques)]
+        space = self.space
+        best = [row for each in solved.checked for row in each.rows(self.loads.torques, self.loads.cases)]
         tables = [DESIGN.of(variant_rows(self.section, space.keys, solved.variants)), BEST.of(best)]
         if solved.best is not None and solved.best.band is not None:
             tables.append(BAND.of(variant_rows(self.section, space.keys, solved.best.band)))
@@ -193,7 +194,7 @@ class Design(Computation[SolvedDesign]):
 
     def _on_lines(self, variant: Floats) -> SceneTorques:
         """A variant (k,) in line contact under all torques."""
-        return SceneTorques(self.space.scene_of(variant), self.loads.torques)
+        return replace(self.loads, scene=self.space.scene_of(variant))
 
     def _resolved(self, variant: Floats) -> SceneTorques:
         """A variant (k,) at the level of the scene under all torques."""

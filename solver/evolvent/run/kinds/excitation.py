@@ -32,7 +32,8 @@ class Excitation(Computation[SolvedExcitation]):
 
     @classmethod
     def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
-        """Excitation of a scene under parts of its torque. Raises SceneError where one of them is refused."""
+        """Excitation of a scene under parts of its torque or the loads that it lists. Raises SceneError where one of
+        them is refused, or for loads of different misalignment."""
         return cls.under(listed_torques(scene, percents))
 
     @classmethod

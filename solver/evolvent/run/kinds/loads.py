@@ -1,4 +1,4 @@
-"""A scene under a list of torques: a run for each, on gears that are condensed once."""
+"""A scene under a list of loads: a run for each, on gears that are condensed once."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 
 from evolvent.gears.shared_gears import SharedGears
 from evolvent.results.drawing.table_pictures import TablePicture
-from evolvent.results.tables.load_table import LOADS, RUNS, LoadRuns, load_results
+from evolvent.results.tables.load_table import LOADS, LoadRuns, load_results, run_folder
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
 from evolvent.run.compute import compute
@@ -16,7 +16,7 @@ from evolvent.run.folder_checks import check_folder
 from evolvent.run.kept_pitch import require_resumable
 from evolvent.run.kinds.run import Run
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import listed_percents, under_percents, with_percents
+from evolvent.scene.load_cases import in_space_sentence, load_cases, under_cases, with_list
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.errors import InputProblem, SceneError
 
@@ -25,10 +25,10 @@ LOADS_PICTURE = TablePicture("loads.png", (LoadRuns(),), "evolvent.results.figur
 
 @dataclass(frozen=True)
 class Loads(Computation[None]):
-    """Runs under some torques, one after the other, each in a folder of its own."""
+    """Runs under some loads, one after the other, each in a folder of its own."""
 
     runs: Mapping[str, Run]
-    """Name of its folder -> run under each torque, on meshes that serve all of them; the heaviest first."""
+    """Name of its folder -> run under each load, on meshes that serve all of them; the heaviest first."""
     name: ClassVar[str] = "loads"
     command: ClassVar[str] = "loads"
     in_line_contact: ClassVar[bool] = True
@@ -37,14 +37,14 @@ class Loads(Computation[None]):
 
     @classmethod
     def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
-        """Runs of a scene under parts of its torque. percents: different ones. Raises SceneError where the gears wear,
-        or where one of the torques is refused."""
+        """Runs of a scene under parts of its torque or the loads that it lists. percents: different ones. Raises
+        SceneError where the gears wear, or where one of the loads is refused."""
         if scene.wear is not None:
             found, allowed = "a load list of gears that wear", "a scene without [wear]"
             raise SceneError([InputProblem("wear", found, allowed, "delete the section, or take `evolvent run`")])
-        listed = listed_percents(scene, percents)
-        scenes = reversed(under_percents(scene, listed).items())
-        return cls(with_percents(scene, listed), {_folder(percent): Run(each) for percent, each in scenes})
+        listed = with_list(scene, percents)
+        scenes = reversed(under_cases(listed).items())
+        return cls(listed, {run_folder(case): Run(each) for case, each in scenes})
 
     @property
     def sized(self) -> list[Scene]:
@@ -57,8 +57,8 @@ class Loads(Computation[None]):
             run.require_level()
 
     def warnings(self) -> Iterable[str]:
-        """None beside those of the runs."""
-        return ()
+        """A warning on loads in space beside those of the runs."""
+        return in_space_sentence(self.scene, self.sized)
 
     def solve(self, call: Call) -> None:
         """Computes the runs; those that are complete stay. Collective; raises what `compute` does."""
@@ -70,7 +70,7 @@ class Loads(Computation[None]):
 
     def results(self, call: Call, solved: None) -> Results:
         """The table of all runs."""
-        rows = [each.row for each in load_results(call.folder.out / name for name in self.runs)]
+        rows = [each.row for each in load_results(call.folder.out, load_cases(self.scene))]
         return Results(self.scene, [LOADS.of(rows)])
 
     def _check_folders(self, call: Call) -> None:
@@ -80,9 +80,3 @@ class Loads(Computation[None]):
             check_folder(run, folder, call.options)
             if call.resume:
                 require_resumable(run.scene, folder, self.command)
-
-
-def _folder(percent: float) -> str:
-    """Name of the folder of a run, different for each percentage."""
-    whole, point, decimals = str(float(percent)).partition(".")
-    return RUNS.format(f"{whole:0>3}{point}{decimals}")

@@ -23,7 +23,7 @@ from evolvent.run.kept_pitch import require_resumable
 from evolvent.run.loss_figures import PitchFigures, loss_warnings, pitch_figures
 from evolvent.run.solved_pitches import SolvedPitches, solved_pitches
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import listed_percents, under_percents, with_percents
+from evolvent.scene.load_cases import LoadCase, in_space_sentence, load_cases, under_cases, with_list
 from evolvent.scene.scene import Scene, SceneError
 from evolvent.scene.schema.errors import InputProblem
 
@@ -38,12 +38,20 @@ SPEED = 1000.0
 
 @dataclass(frozen=True)
 class LossRow:
-    """A line of losses.csv: a torque and a friction coefficient."""
+    """A line of losses.csv: a load and a friction coefficient."""
 
+    case: str
+    """Name of the load case, or the part of the scene's torque."""
     torque_Nm: float
     """Torque on the gear that the scene names."""
     torque_on: str
     """Gear on which the torque is held constant, pinion or wheel."""
+    speed_rpm: float
+    """Speed of the pinion in the load case; NaN where it is not given."""
+    share_of_life: float
+    """Share of the life in the load case; NaN where it is not given."""
+    misalignment_um: float
+    """Opening of the flanks over the face width, `pair.misalignment_um` or that of the load case."""
     friction: float
     """Friction coefficient μ."""
     loss_percent: float
@@ -58,6 +66,12 @@ class LossRow:
     power is in proportion to the speed."""
     loss_at_1000_rpm_W_error: float
     """Estimated error of the friction power."""
+    input_W: float
+    """Input power at the speed of the load case; NaN where it is not given."""
+    loss_W: float
+    """Friction power at this speed."""
+    loss_W_error: float
+    """Estimated error of this friction power."""
     tooth_loss_factor: float
     """Tooth loss factor H_V: loss over the input and μ; NaN where μ is 0."""
     tooth_loss_factor_error: float
@@ -77,18 +91,20 @@ def loss_lines(out: Path) -> Iterator[str]:
     heaviest = max(row.torque_Nm for row in rows)
     for row in (row for row in rows if row.friction and row.torque_Nm == heaviest):
         percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
-        power = plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)
+        power = f"{plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)} W at {SPEED:g} r/min"
+        if math.isfinite(row.speed_rpm):
+            power = f"{plus_minus(row.loss_W, row.loss_W_error, 1)} W at {row.speed_rpm:g} r/min"
         factor = plus_minus(row.tooth_loss_factor, row.tooth_loss_factor_error, 4)
         beside = "" if math.isnan(row.ohlendorf_loss_factor) else f" (Ohlendorf {row.ohlendorf_loss_factor:.4f})"
         yield (
-            f"{row.torque_Nm:.4g} N·m on the {row.torque_on}, μ = {row.friction:g}: loss {percent} % of the input, "
-            f"{power} W at {SPEED:g} r/min; tooth loss factor {factor}{beside}"
+            f"{row.case}, {row.torque_Nm:.4g} N·m on the {row.torque_on}, μ = {row.friction:g}: loss {percent} % of "
+            f"the input, {power}; tooth loss factor {factor}{beside}"
         )
 
 
 @dataclass(frozen=True)
 class Losses(Computation[list[SolvedPitches]]):
-    """The pitch with friction under each of a list of torques."""
+    """The pitch with friction under each of a list of loads."""
 
     name: ClassVar[str] = "losses"
     command: ClassVar[str] = "losses"
@@ -100,14 +116,13 @@ class Losses(Computation[list[SolvedPitches]]):
 
     @classmethod
     def of(cls, scene: Scene, percents: Sequence[float] = ()) -> Self:
-        """Losses of a scene under parts of its torque."""
-        unworn = scene.model_copy(update={"wear": None})
-        return cls(with_percents(unworn, listed_percents(scene, percents)))
+        """Losses of a scene under parts of its torque or the loads that it lists."""
+        return cls(with_list(scene.model_copy(update={"wear": None}), percents))
 
     @property
     def sized(self) -> list[Scene]:
-        """The scene under each torque, the lightest first, on meshes that serve all of them."""
-        return list(under_percents(self.scene, self.scene.load.percents).values())
+        """The scene under each load, the lightest first, on meshes that serve all of them."""
+        return list(under_cases(self.scene).values())
 
     def check(self) -> None:
         """Raises SceneError for a scene without friction."""
@@ -116,8 +131,8 @@ class Losses(Computation[list[SolvedPitches]]):
             raise SceneError([InputProblem("contact.friction", found, allowed, "0.05 is usual for lubricated steel")])
 
     def warnings(self) -> Iterator[str]:
-        """Warnings on charts, flanks and tips, and on an operating speed, which has no effect."""
-        yield from super().warnings()
+        """Warnings on charts, flanks and tips, loads in space, and an operating speed, which has no effect."""
+        yield from (*super().warnings(), *in_space_sentence(self.scene, self.sized))
         if self.scene.dynamics is not None and self.scene.dynamics.operating_rpm is not None:
             yield (
                 "dynamics.operating_rpm: without effect on losses.csv, which is under constant torques; `evolvent run` "
@@ -125,7 +140,7 @@ class Losses(Computation[list[SolvedPitches]]):
             )
 
     def solve(self, call: Call) -> list[SolvedPitches]:
-        """Both pitches under each torque, on gears that are condensed once, see `Computation.solve`."""
+        """Both pitches under each load, on gears that are condensed once, see `Computation.solve`."""
         parts = {PART.format(number): scene for number, scene in enumerate(self.sized)}
         call.on_first(lambda: self._check_parts(call, parts))
         gears = SharedGears([gear_problem(scene) for scene in parts.values()])
@@ -133,33 +148,37 @@ class Losses(Computation[list[SolvedPitches]]):
             return [solved_pitches(call.preparing(prepare), scene, part) for part, scene in parts.items()]
 
     def results(self, call: Call, solved: list[SolvedPitches]) -> Results:
-        """The table of all torques."""
+        """The table of all loads."""
         figures = pitch_figures(solved)
-        rows = [row for each in figures for row in _rows(each)]
+        rows = [row for case, each in zip(load_cases(self.scene), figures) for row in _rows(case, each)]
         timings = sum((load.timings for load in solved), Timings())
         return Results(self.scene, [LOSSES.of(rows)], [*loss_warnings(self.scene, solved, figures)], timings=timings)
 
     def _check_parts(self, call: Call, parts: Mapping[str, Scene]) -> None:
         """Raises ArchiveError, before anything is removed, where stored positions belong to another scene. On rank 0
-        alone. parts: of the archive, with the scene under each torque."""
+        alone. parts: of the archive, with the scene under each load."""
         for part, scene in parts.items() if call.resume else ():
             require_resumable(scene, call.folder.out, self.command, part, self.scene)
 
 
-def _rows(figures: PitchFigures) -> Iterator[LossRow]:
-    """Losses at each friction coefficient under one torque."""
+def _rows(case: LoadCase, figures: PitchFigures) -> Iterator[LossRow]:
+    """Losses at each friction coefficient under one load."""
     run = figures.run
     load, beside = run.scene.load, ohlendorf_loss_factor(run.pair)
     passed = 1e-3 * run.scene.hertz_estimate().pinion_torque * MeshSpeed(SPEED, run.pair.pinion.z).rad_s
+    speed, share = (math.nan if each is None else each for each in (case.speed_rpm, case.share_of_life))
     for index, row in enumerate(figures.rows):
         loss, bar = 0.01 * row.loss_percent, 0.01 * run.errors.bar("loss_percent", index)
         delivered = 1.0 - loss if load.on != load.driving else 1.0  # part of the input that the torque is held for
         factor, factor_bar = (each / row.friction if row.friction else math.nan for each in (loss, bar))
+        taken, lost, off = passed / delivered, passed * loss / delivered, passed * bar / delivered**2
         yield LossRow(
-            torque_Nm=load.torque_Nm, torque_on=load.on, friction=row.friction, loss_percent=100.0 * loss,
-            loss_percent_error=100.0 * bar, input_at_1000_rpm_W=passed / delivered,
-            loss_at_1000_rpm_W=passed * loss / delivered, loss_at_1000_rpm_W_error=passed * bar / delivered**2,
-            tooth_loss_factor=factor, tooth_loss_factor_error=factor_bar, ohlendorf_loss_factor=beside,
+            case=case.name, torque_Nm=load.torque_Nm, torque_on=load.on, speed_rpm=speed, share_of_life=share,
+            misalignment_um=case.misalignment_um, friction=row.friction, loss_percent=100.0 * loss,
+            loss_percent_error=100.0 * bar, input_at_1000_rpm_W=taken, loss_at_1000_rpm_W=lost,
+            loss_at_1000_rpm_W_error=off, input_W=taken * speed / SPEED, loss_W=lost * speed / SPEED,
+            loss_W_error=off * speed / SPEED, tooth_loss_factor=factor, tooth_loss_factor_error=factor_bar,
+            ohlendorf_loss_factor=beside,
         )
 
 

@@ -177,7 +177,7 @@ def key_problem(name: str, value: Any, model: type[SceneSection]) -> InputProble
     """The problem where a dotted name is not that of a key of a schema, None where it is. value: given for it."""
     keys, path = keys_of(model), name.split(".")
     if name in keys:
-        return None
+        return _of_a_list(name, value) if len(path) > 1 and is_listed(model.model_fields[path[0]]) else None
     for depth in range(1, len(path)):
         if not any(each.startswith(".".join([*path[:depth], ""])) for each in keys):
             return _unknown_key(list(path[:depth]), {".".join(path[depth:]): value}, model)
@@ -188,13 +188,19 @@ def key_problem(name: str, value: Any, model: type[SceneSection]) -> InputProble
     return _not_a_section(list(path), value, field, section)
 
 
+def _of_a_list(name: str, value: Any) -> InputProblem:
+    """The problem with a key of a list of sections, where it does not say which of them."""
+    found = f"{shown(value)} for a key that each section [[{name.partition('.')[0]}]] has"
+    return InputProblem(name, found, "keys of sections that there is one of", "give it in the base scene")
+
+
 def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -> InputProblem:
     """Problem with an unknown key or section, with a suggestion, or the note that it is not supported."""
     name, parents = str(path[-1]), [part for part in path[:-1] if isinstance(part, str)]
-    found = f"an unknown {'section' if isinstance(value, dict) else 'key'}, {shown(value)}"
+    found = f"an unknown {'section' if _is_section(value) else 'key'}, {shown(value)}"
     place = f"a key of [{dotted(parents)}]" if parents else "a section or key"
     allowed = f"{place} that {model.page} lists"
-    meant = _meant(name, parents, model, isinstance(value, dict))
+    meant = _meant(name, parents, model, value)
     if meant is None:
         return InputProblem(dotted(path), found, allowed, f"delete it, or see {model.page}")
     if not meant.keys:
@@ -204,15 +210,16 @@ def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -
     return InputProblem(dotted(path), found, allowed, remedy)
 
 
-def _meant(name: str, parents: list[str], model: type[SceneSection], is_section: bool) -> Meant | None:
-    """Probable meaning of an unknown key or section; None where there is none."""
+def _meant(name: str, parents: list[str], model: type[SceneSection], value: Any) -> Meant | None:
+    """Probable meaning of an unknown key or section with a value; None where there is none."""
     parent = dotted(parents)
     inside = section_of(_declaration(parents, model)) if parents else model
     assert inside is not None
     here = [f"{parent}.{key}" if parent else key for key in inside.model_fields]
     sections = [key for key, field in zip(here, inside.model_fields.values()) if section_of(field)]
-    if is_section:
-        found = meant_section(name, parent, sections if model.kind == "scene" else here, model.kind)
+    if _is_section(value):
+        among = sections if model.kind == "scene" else here
+        found = meant_section(name, parent, among, model.kind, isinstance(value, list))
     else:
         found = meant_key(name, parent, [key for key in here if key not in sections], keys_of(model), model.kind)
     if found is None and model.kind == "scene" and (words := not_supported(name, parent)):
@@ -223,11 +230,12 @@ def _meant(name: str, parents: list[str], model: type[SceneSection], is_section:
 def _not_a_section(path: list[str | int], value: Any, field: FieldInfo, section: type[BaseModel]) -> InputProblem:
     """The problem with a value in place of a section, or of a list of sections."""
     keys, name = ", ".join(section.model_fields), dotted(path)
-    if len(path) == 1 and get_origin(field.annotation) is tuple:
+    if len(path) == 1 and is_listed(field):
         allowed = f"one or more sections [[{name}]], each with the keys {keys}"
         return InputProblem(name, shown(value), allowed, f"write [[{name}]] in place of [{name}]")
-    is_list = isinstance(value, list) and value and isinstance(value[0], dict)
+    is_list = isinstance(value, list) and _is_section(value)
     remedy = f"write [{name}] in place of [[{name}]]" if is_list else f"write [{name}] above its keys"
+    remedy = remedy if isinstance(path[-1], str) else f"write [[{dotted(path[:-1])}]] above its keys"
     return InputProblem(name, shown(value), f"a section with the keys {keys}", remedy)
 
 
@@ -242,6 +250,16 @@ def _declaration(names: list[str], model: type[BaseModel]) -> FieldInfo:
     field = model.model_fields[names[0]]
     section = section_of(field)
     return field if len(names) == 1 or section is None else _declaration(names[1:], section)
+
+
+def is_listed(field: FieldInfo) -> bool:
+    """Whether a field holds a list."""
+    return get_origin(field.annotation) is tuple
+
+
+def _is_section(value: Any) -> bool:
+    """Whether a value is a section, or a list of sections."""
+    return isinstance(value[0] if isinstance(value, list) and value else value, dict)
 
 
 def section_of(field: FieldInfo) -> type[BaseModel] | None:

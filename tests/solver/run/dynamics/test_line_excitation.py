@@ -75,7 +75,7 @@ def test_facts_have_the_figures_of_a_line_contact(whole: Path, tmp_path: Path) -
     assert facts["mesh_level"] == "line" and facts["face_load_factor"] is None
     assert 500.0 < facts["largest_pressure_MPa"] < 2000.0
     assert 0.0 < facts["largest_pressure_MPa_error"] < 0.1 * facts["largest_pressure_MPa"]
-    assert list(excitation_lines(whole))[-1].startswith("170 N·m, line contact: p_0 ")
+    assert list(excitation_lines(whole))[-1].startswith("100 %, 170 N·m, line contact: p_0 ")
     quietly(excitation("mesh.level=quick", "output.error_bars=false"), tmp_path)
     facts = json.loads((tmp_path / "excitation.json").read_text(encoding="utf-8"))
     assert facts["face_load_factor"] is facts["largest_pressure_MPa"] is None

@@ -218,8 +218,8 @@ def test_picture_of_so_many_keys(keys: int) -> None:
     ]
     nan = float("nan")
     rows = [
-        BestRow(rank, number, torque, 1.0, 0.1, 300.0, 1.0, 1.1, 0.01, 900.0, 9.0, 0.5, 0.01, 0.4, 0.01, 1.1, 0.1,
-                300.0, 1.0, 0.5, 0.01, 0.4, 0.01, 0, *[nan] * 10)
+        BestRow(rank, number, "", torque, 1.0, 0.1, 300.0, 1.0, 1.1, 0.01, 900.0, 9.0, 0.5, 0.01, 0.4, 0.01, 1.1,
+                0.1, 300.0, 1.0, 0.5, 0.01, 0.4, 0.01, 0, *[nan] * 10)
         for rank, number in ((1, 2), (0, 0)) for torque in (100.0, 200.0)
     ]
     for best, target in (

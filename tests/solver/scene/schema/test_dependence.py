@@ -12,7 +12,7 @@ from evolvent.scene.scene import Scene, SceneError, load_scene, scene_from_text
 from evolvent.scene.schema.dependence import dependents, effectless_keys
 from evolvent.scene.schema.errors import keys_of
 from tests.support.checkout import ROOT
-from tests.support.running.scene_effects import BARE, CHARTS, bare_scene, follows_the_same, other_value
+from tests.support.running.scene_effects import BARE, CHARTS, bare_scene, follows_the_same, other_value, setting
 from tests.support.scene_texts import DEMOS
 
 NEEDS = {each.key: each for each in dependents(Scene)}
@@ -32,7 +32,9 @@ HANDED_ON = {
 """Keys that nothing before the computation depends on, and the room that is handed their values as they are, or another
 reason."""
 DEVIATIONS = ["dynamics.base_pitch_deviation_um=6", "dynamics.profile_deviation_um=6"]
+LOAD_CASE = [setting("load_case.name", '"a"')]
 BESIDE = {
+    **{key: LOAD_CASE for key in keys_of(Scene) if key.startswith("load_case.")},
     "pinion.protuberance_um": ["wheel.addendum_coefficient=0.75"],
     "wheel.protuberance_um": ["pinion.addendum_coefficient=0.75"],
     "dynamics.base_pitch_deviation_um": ["dynamics.profile_deviation_um=6"],
@@ -61,8 +63,8 @@ def charts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def setting(key: str) -> str:
-    return f"{key}={other_value(key)}"
+def other(key: str) -> str:
+    return setting(key, other_value(key))
 
 
 def mains_of(key: str) -> list[str]:
@@ -70,7 +72,7 @@ def mains_of(key: str) -> list[str]:
     dependent = NEEDS.get(key)
     if dependent is None or dependent.holding is not None:
         return []
-    return [*mains_of(dependent.mains[0]), setting(dependent.mains[0])]
+    return [*mains_of(dependent.mains[0]), other(dependent.mains[0])]
 
 
 @pytest.mark.parametrize("key", [key for key in keys_of(Scene) if key not in HANDED_ON])
@@ -78,7 +80,7 @@ def test_every_key_has_an_effect(key: str) -> None:
     """In a scene that has nothing else that is optional, or just the main key that the schema declares, another value
     changes the gears, the models of vibration, root stress and fatigue, the output, or what `check` says."""
     beside = [*BESIDE.get(key, []), *mains_of(key)]
-    assert not follows_the_same(scene_from_text(BARE, [*beside, setting(key)]), *beside)
+    assert not follows_the_same(scene_from_text(BARE, [*beside, other(key)]), *beside)
 
 
 @pytest.mark.parametrize("key", [key for key, each in NEEDS.items() if each.holding is None and key not in HANDED_ON])
@@ -87,14 +89,14 @@ def test_dependent_keys_are_refused_alone(key: str) -> None:
     nothing would change."""
     bare, mains = bare_scene(), NEEDS[key].mains
     with pytest.raises(SceneError) as caught:
-        scene_from_text(BARE, [setting(key)])
+        scene_from_text(BARE, [other(key)])
     [problem] = caught.value.problems
     assert problem.key == key and "no effect" in problem.allowed
     assert all(main in problem.allowed and main in problem.remedy for main in mains) and "delete" in problem.remedy
     if key in REFUSED_BELOW:
         return
     section, name = key.split(".")
-    given = getattr(scene_from_text(BARE, [*mains_of(key), setting(key)]), section)
+    given = getattr(scene_from_text(BARE, [*mains_of(key), other(key)]), section)
     changed = getattr(bare, section).model_copy(update={name: getattr(given, name)})
     assert follows_the_same(bare.model_copy(update={section: changed}))
 

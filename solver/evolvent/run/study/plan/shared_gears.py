@@ -37,7 +37,7 @@ def meshes(scene: Scene, compute: str) -> tuple[Mesher, ...]:
 
 def own_torque(scene: Scene) -> SceneTorques:
     """Torques of an excitation of a scene: its own torque alone."""
-    return SceneTorques(scene.model_copy(update={"wear": None}), (1e3 * scene.load.torque_Nm,))
+    return SceneTorques(scene.model_copy(update={"wear": None}), (1e3 * scene.load.torque_Nm,), ("100 %",))
 
 
 def condensed_problem(scene: Scene, compute: str) -> GearProblem:

@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 from evolvent.scene.schema.guesses.gear_terms import GEAR_TERMS
 from evolvent.scene.schema.guesses.nearest_key import nearest_key
-from evolvent.scene.schema.guesses.other_terms import OTHER_TERMS, SECTION_TERMS, STUDY_TERMS
+from evolvent.scene.schema.guesses.other_terms import LIST_TERMS, OTHER_TERMS, SECTION_TERMS, STUDY_TERMS
 from evolvent.scene.schema.guesses.terms import Meant, meant_by
 from evolvent.scene.schema.guesses.units import are_of_one_quantity, stem_of
 
@@ -37,11 +37,13 @@ def meant_key(name: str, section: str, here: Collection[str], everywhere: Collec
     return Meant(tuple(named), "") if "_" in name and named else None  # single words name other things elsewhere
 
 
-def meant_section(name: str, parent: str, here: Collection[str], kind: str) -> Meant | None:
+def meant_section(
+    name: str, parent: str, here: Collection[str], kind: str, is_listed: bool = False
+) -> Meant | None:
     """Probable meaning of an unknown section; None where there is none. Parameters as of `meant_key`, with sections in
-    place of keys."""
-    terms = SECTION_TERMS if kind == "scene" else STUDY_TERMS
-    if meant := meant_by(name.lower(), parent, terms):
+    place of keys. is_listed: whether it is a list of sections."""
+    terms = (*SECTION_TERMS, *(LIST_TERMS if is_listed else ())) if kind == "scene" else STUDY_TERMS
+    if meant := meant_by(name.lower().replace(" ", "_"), parent, terms):
         return meant
     near = nearest_key(name, here)
     return Meant((near,), "") if near else None

@@ -7,6 +7,7 @@ from evolvent.scene.schema.guesses.terms import Term
 FEM = "finite element programs"
 TOOLS = "gear programs"
 SIZE = "cells are that many times shorter than the Hertz width 2b_H, which `evolvent check` prints"
+OF_LIST = "a section [[load_case]] for each load"
 COMMAND_LINE = "folders and files are named on the command line: --out DIR"
 
 OTHER_TERMS: tuple[Term, ...] = (
@@ -35,6 +36,14 @@ OTHER_TERMS: tuple[Term, ...] = (
     Term("line_load specific_load w w_t", ("load.torque_Nm",), "T = w b d/2 of a tangential line load w", "AGMA 2001"),
     Term("application_factor k_a ka overload_factor load_factor service_factor", ("load.torque_Nm",),
          "multiply the torque by the factor", "ISO 6336-1"),
+    Term("load.cases load.case load.load_cases load.duty_cycle load.spectrum load.torques load.list",
+         ("load_case", "load.percents"), "absolute torques in sections [[load_case]], or percents of load.torque_Nm"),
+    Term("load_case.rpm load_case.n load_case.n1 load_case.n_1 load_case.omega", ("load_case.speed_rpm",),
+         "of the pinion"),
+    Term("load_case.share load_case.time_share load_case.q load_case.weight load_case.fraction load_case.probability "
+         "load_case.duration load_case.hours load_case.time load_case.cycles", ("load_case.share_of_life",),
+         "over the whole life"),
+    Term("load_case.title load_case.id load_case.label", ("load_case.name",)),
     Term("torque_on loaded_gear torque_gear load.gear load.side", ("load.on",)),
     Term("driver driving_gear driving_member driven driven_gear drive_gear input_gear input input_on output_gear "
          "driving_wheel power_flow load.direction sweep.direction sense_of_rotation direction_of_rotation "
@@ -150,7 +159,9 @@ SECTION_TERMS: tuple[Term, ...] = (
     Term("gear1 gear_1 driver driving driving_gear drive_gear input_gear small_gear pinion_gear gear_a", ("pinion",)),
     Term("gears geometry gear_pair gearpair toothing gear_data gear_geometry basic_data", ("pair",)),
     Term("materials material_data", ("material",)), Term("coulomb friction contact_pair interaction", ("contact",)),
-    Term("loads loading load_case loadcase operating_conditions", ("load",)),
+    Term("loads loading", ("load",)),
+    Term("load_cases loadcase loadcases case cases duty_cycle dutycycle duty load_spectrum spectrum load_collective "
+         "collective operating_conditions operating_points operating_point", ("load_case",), OF_LIST),
     Term("fe fem fea meshing discretization discretisation", ("mesh",)),
     Term("steps kinematics rotation", ("sweep",)), Term("archard", ("wear",)),
     Term("vibration nvh dynamic", ("dynamics",)), Term("time_domain impact", ("transient",)),
@@ -167,6 +178,9 @@ SECTION_TERMS: tuple[Term, ...] = (
          "addendum_coefficient and dedendum_coefficient"),
     Term("solver analysis petsc linear_solver newton", (), "solvers have no settings in a scene"),
 )
+
+LIST_TERMS: tuple[Term, ...] = (Term("loads loading", ("load_case",), OF_LIST),)
+"""Words for lists of sections that are those of another section where there is one."""
 
 STUDY_TERMS: tuple[Term, ...] = (
     Term("base base_scene scene_file base_file", ("scene",)),

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from evolvent.scene.part_torque import under_torque
+from evolvent.scene.load_cases import under_torque
 from evolvent.scene.scene import SceneError
 from tests.support.gear_cases import spur_scene
 

@@ -213,7 +213,7 @@ def _remedy(scene: Scene, needed: MemoryEstimate, processes: int, there: float) 
     if processes > 1 and needed(scene, 1) <= there:
         return "run on one rank"
     if lightest := _lightest_that_fits(scene, needed, processes, there):
-        return f"leave out loads below about {lightest:.3g} N·m (--percent), or take a coarser mesh"
+        return f"leave out loads below about {lightest:.3g} N·m (--percent, load_case), or take a coarser mesh"
     for words, other in _coarser(scene):
         if (wanted := needed(other, processes)) <= there:
             return f"take {words} ({gigabytes(wanted)})"

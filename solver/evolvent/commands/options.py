@@ -166,7 +166,7 @@ ExactParts = Annotated[
 
 def torque_list(default: str) -> Any:
     """Option for the torques of a list. default: as the help shows it."""
-    words = "In percent of the scene's torque; by default load.percents of the scene."
+    words = "In percent of the scene's torque; by default the loads that the scene lists, load.percents or load_case."
     return Annotated[
         Any, typer.Option("--percent", metavar="LIST", help=words, parser=given_percents, show_default=default)
     ]

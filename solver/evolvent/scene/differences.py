@@ -21,9 +21,9 @@ def essence(scene: Scene) -> Scene:
     """The scene without the parts that its results do not depend on: title, output, the paths of flank charts, the
     other loads of a list, and variants of its flanks."""
     exact = ExactSection(parts=tuple(name for name in scene.exact.parts if name not in OF_OUTPUT))
-    bare = scene.changed("load", percents=()).changed("pinion", flank_csv=None).changed("wheel", flank_csv=None)
-    update = {"title": "", "output": OutputSection(), "exact": exact, "design": None, "load_case": ()}
-    return bare.model_copy(update=update)
+    alone = scene.model_copy(update={"load_case": ()})
+    bare = alone.changed("load", percents=()).changed("pinion", flank_csv=None).changed("wheel", flank_csv=None)
+    return bare.model_copy(update={"title": "", "output": OutputSection(), "exact": exact, "design": None})
 
 
 def identity(scene: Scene) -> list[Any]:

@@ -112,9 +112,9 @@ def _vectors(body, own, nodal: Floats, tooth: int):  # type: ignore[no-untyped-d
 
 
 def test_load_falls_towards_the_end_of_the_face() -> None:
-    """Problem: a helical pair whose line reaches both ends of the face. Right: within half a contact width of an end the
-    load per length is a tenth lower than without what `FaceEnds` adds, or more; the middle bears it; the torque is the
-    same."""
+    """Problem: a helical pair whose line reaches both ends of the face. Right: within half a contact width of an end
+    the load per length is a tenth lower than without what `FaceEnds` adds, or more; the middle bears it; the torque is
+    the same."""
     gears, half = LineGears.of(helical_model()), 0.5 * helical_model().pair.face_width
     position = gears.position(0.05)
     force = 60e3 / gears.base_radius

@@ -14,6 +14,7 @@ from evolvent.results.archive.archive import fingerprint
 from evolvent.run.study.plan.parameters import axes, combinations
 from evolvent.run.study.plan.shared_gears import gears_names, on_shared_meshes
 from evolvent.run.study.plan.study_file import StudyFile
+from evolvent.scene.load_cases import load_cases
 from evolvent.scene.scene import Scene, SceneError, future_warning, scene_from_values
 from evolvent.scene.scene_text import apply_overrides, nested_values, scene_text
 from evolvent.scene.schema.errors import InputProblem, shown
@@ -134,4 +135,5 @@ def _name(each: StudyScene, study: StudyFile, version: str) -> str:
         content = [sorted((name, repr(value)) for name, value in each.parameters.items())]
     else:
         content = [fingerprint(each.scene), each.scene.output.model_dump(mode="json"), each.scene.exact.parts]
+        content += map(repr, load_cases(each.scene) if study.compute == "losses" else ())
     return hashlib.sha256(json.dumps([version, study.compute, shared, *content]).encode()).hexdigest()[:NAME]

@@ -34,6 +34,16 @@ def test_names_are_of_the_content(tmp_path: Path) -> None:
     assert not set(one) & {each.name for each in scenes_of(tmp_path, TORQUES, version="2.0")}
 
 
+def test_names_are_of_the_loads_that_are_computed(tmp_path: Path) -> None:
+    """Losses under other parts of the torque, or under load cases, have other names; a run, which has no list of loads,
+    has the same one."""
+    for compute, count in (("losses", 3), ("run", 1)):
+        head, alone = HEAD.replace('"check"', f'"{compute}"'), "[grid]\nload.torque_Nm = [100.0]\n"
+        lists = "", "[set]\nload.percents = [50.0, 100.0]\n", "[set]\nload.percents = [50.0]\n"
+        names = [each.name for text in lists for each in scenes_of(tmp_path, f"{head}{alone}{text}")]
+        assert len(set(names)) == count
+
+
 def test_values_that_are_no_scene_are_refused_alone(tmp_path: Path) -> None:
     """A negative torque among two: its scene is refused with the reason, the other one stands."""
     refused, fine = scenes_of(tmp_path, f"{HEAD}[grid]\nload.torque_Nm = [-1.0, 100.0]\n")

@@ -25,11 +25,11 @@ from evolvent.gears.unloaded_error import RigidFlanks, unloaded_error
 from evolvent_meshes.arrays import Floats
 
 FRICTION, POSITIONS = 0.1, 20
-PAIRS: tuple[tuple[str, float, str], ...] = (
-    ("He, plane", 30.0, "fine"), ("He, plane", 100.0, "fine"), ("He, linear relief, plane", 100.0, "fine"),
-    ("He, lead crowning", 100.0, "quick"), ("Yang, relieved", 30.0, "quick"), ("Yang, relieved", 100.0, "quick"),
+PAIRS: tuple[tuple[str, float], ...] = (
+    ("He, plane", 30.0), ("He, plane", 100.0), ("He, linear relief, plane", 100.0), ("He, lead crowning", 100.0),
+    ("Yang, relieved", 30.0), ("Yang, relieved", 100.0),
 )
-"""Pair, torque in percent and level at which the contact is resolved; in space level quick, for its time."""
+"""Pair and torque in percent."""
 
 
 @dataclass(frozen=True)
@@ -72,11 +72,10 @@ TABLE = Table(FrictionRow, (
 ))
 
 
-def friction_row(name: str, percent: float, level: str) -> FrictionRow:
+def friction_row(name: str, percent: float) -> FrictionRow:
     """The row of a pair of `ALL` under a part of its torque."""
     own = next(case for case in ALL if case.name == name).problem
-    mesh = MeshSettings("quick") if level == "quick" else own.mesh
-    problem = replace(own, torque=own.torque * percent / 100.0, mesh=mesh)
+    problem = replace(own, torque=own.torque * percent / 100.0)
     pitch, frictions = uniform_pitch(problem.pair.pinion.z, POSITIONS), (0.0, FRICTION)
     resolved = certified_pitch(prepare_model(problem).model, pitch, frictions, MPI.COMM_SELF).by_friction
     model = prepare_model(replace(problem, mesh=MeshSettings("line"))).model
@@ -85,7 +84,7 @@ def friction_row(name: str, percent: float, level: str) -> FrictionRow:
     smooth, rubbing = (_Both(problem, unloaded, *each) for each in zip(resolved, lines))
     loss = rubbing.losses
     return FrictionRow(
-        name, level, 1e-3 * problem.torque, 1e3 * rubbing.deflection, 100.0 * loss[0],
+        name, own.mesh.level, 1e-3 * problem.torque, 1e3 * rubbing.deflection, 100.0 * loss[0],
         100.0 * (loss[1] / loss[0] - 1.0), 100.0 * rubbing.tooth_force, 100.0 * smooth.tooth_force,
         100.0 * rubbing.position, 100.0 * smooth.position, 1e3 * float(np.ptp(rubbing.errors[0])),
         1e3 * float(np.ptp(rubbing.errors[1]) - np.ptp(rubbing.errors[0])), 100.0 * rubbing.other_torque,

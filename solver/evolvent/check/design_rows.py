@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from evolvent.check.text_table import Row
 from evolvent.scene.line_level import LINE
-from evolvent.scene.part_torque import listed_percents
+from evolvent.scene.load_cases import load_cases, with_list
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.design import LOSS, PERCENTS, DesignSection
 from evolvent.scene.schema.errors import InputProblem, shown
@@ -17,9 +17,9 @@ DEVIATES = "Tolerances", ("±",)
 
 def design_rows(scene: Scene, section: DesignSection) -> list[Row]:
     """Rows on the variants of a scene with [design], and on what is computed of each."""
-    percents, positions = listed_percents(scene, (), PERCENTS), scene.sweep.positions
+    loads, positions = load_cases(with_list(scene, default=PERCENTS)), scene.sweep.positions
     search, count = _search(section)
-    solved = (1 + count) * positions * len(percents)
+    solved = (1 + count) * positions * len(loads)
     limits = [f"{figure} {most:g}" for figure, most in section.limits]
     resolved = f"{section.verified} at level {scene.mesh.level}" if scene.mesh.level != LINE else "none at level line"
     within = section.deviations
@@ -27,7 +27,7 @@ def design_rows(scene: Scene, section: DesignSection) -> list[Row]:
         Row("combinations of what varies", "", "", (f"{section.size:,}",)),
         Row("searched by", "", "", (search,)),
         Row("variants computed, beside the scene", "", "", (f"{'' if count == section.size else 'about '}{count:,}",)),
-        Row("torques", "", "%", (", ".join(f"{each:g}" for each in sorted(percents)),)),
+        Row("loads", "", "", (", ".join(each.name for each in loads),)),
         Row("positions of the pitch", "", "", (str(positions),)),
         Row("positions × torques × variants", "", "", (f"{solved:,}",)),
         *([Row("  again with friction, for the loss", "", "", (f"{solved:,}",))] if LOSS in section.asked else []),

@@ -25,7 +25,7 @@ def test_all_variants_where_they_are_no_more_than_the_samples() -> None:
     found = told()
     assert (found["combinations of what varies"], found["searched by"]) == ("105", "computing all of them")
     assert found["variants computed, beside the scene"] == "105"
-    assert found["torques"] == "25, 50, 75, 100" and found["positions × torques × variants"] == "12,720"
+    assert found["loads"] == "25 %, 50 %, 75 %, 100 %" and found["positions × torques × variants"] == "12,720"
     assert "again with friction, for the loss" not in found and "limits" not in found
     assert "variants within tolerances, of each best one" not in found
 

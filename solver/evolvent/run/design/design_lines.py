@@ -45,7 +45,8 @@ def design_lines(folder: Path) -> Iterator[str]:
     has_harmonic = HARMONIC in (*section["targets"], *dict(section["limits"]))
     for row in best:
         before = next(each for each in rows if each.variant == 0 and each.torque_Nm == row.torque_Nm)
-        yield f"{row.case}, {row.torque_Nm:.4g} N·m: transmission error {'; '.join(_figures(row, before, has_harmonic))}"
+        figures = "; ".join(_figures(row, before, has_harmonic))
+        yield f"{row.case}, {row.torque_Nm:.4g} N·m: transmission error {figures}"
 
 
 def _most_robust(rows: Sequence[BestRow], target: Figure) -> Iterator[str]:

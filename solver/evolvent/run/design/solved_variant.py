@@ -23,7 +23,7 @@ from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.loss_figures import loss_warnings, pitch_figures
 from evolvent.run.solved_pitches import SolvedPitches, solved_pitches
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.part_torque import under_torque
+from evolvent.scene.load_cases import under_torque
 from evolvent.scene.scene import Scene
 from evolvent_meshes.errors import ResultError
 

@@ -36,7 +36,7 @@ def test_a_part_of_them(search: str, words: str) -> None:
     loss = 'design.targets=["loss_percent"]'
     found = told("design.samples=50", f"design.search={search}", "load.percents=[100,20]", loss)
     assert found["searched by"].startswith(words) and found["variants computed, beside the scene"] == "about 50"
-    assert found["torques"] == "20, 100" and found["positions × torques × variants"] == "3,060"
+    assert found["loads"] == "20 %, 100 %" and found["positions × torques × variants"] == "3,060"
     assert found["again with friction, for the loss"] == "3,060" and found["targets"] == "loss_percent"
 
 

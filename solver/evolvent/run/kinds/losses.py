@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 
 from evolvent.dynamics.oscillator.mesh_speed import MeshSpeed
+from evolvent.gears.line.line_result import EdgeContact
 from evolvent.gears.problem.loss_factor import ohlendorf_loss_factor
 from evolvent.gears.shared_gears import SharedGears
 from evolvent.results.archive.error_bar_data import plus_minus
@@ -102,8 +103,18 @@ def loss_lines(out: Path) -> Iterator[str]:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class SolvedLoads:
+    """The pitch under each load, the lightest first."""
+
+    pitches: list[SolvedPitches]
+    """The pitches that have figures."""
+    left_out: str = ""
+    """Sentence on the heavier loads, which have none in line contact; empty where all have."""
+
+
 @dataclass(frozen=True)
-class Losses(Computation[list[SolvedPitches]]):
+class Losses(Computation[SolvedLoads]):
     """The pitch with friction under each of a list of loads."""
 
     name: ClassVar[str] = "losses"
@@ -139,20 +150,30 @@ class Losses(Computation[list[SolvedPitches]]):
                 "solves the contact under the mesh force at this speed."
             )
 
-    def solve(self, call: Call) -> list[SolvedPitches]:
-        """Both pitches under each load, on gears that are condensed once, see `Computation.solve`."""
+    def solve(self, call: Call) -> SolvedLoads:
+        """Both pitches under each load, on gears that are condensed once, see `Computation.solve`. In line contact
+        loads are left out from the one on under which edges of tips bear. Raises EdgeContact where it is the lightest."""
         parts = {PART.format(number): scene for number, scene in enumerate(self.sized)}
         call.on_first(lambda: self._check_parts(call, parts))
         gears = SharedGears([gear_problem(scene) for scene in parts.values()])
+        solved: list[SolvedPitches] = []
         with call.beginning(self.scene, gears.prepare) as prepare:
-            return [solved_pitches(call.preparing(prepare), scene, part) for part, scene in parts.items()]
+            for part, scene in parts.items():
+                try:
+                    solved.append(solved_pitches(call.preparing(prepare), scene, part))
+                except EdgeContact as error:
+                    if not solved:
+                        raise
+                    return SolvedLoads(solved, f"Loads from {scene.load.torque_Nm:.4g} N·m on are left out: {error}.")
+        return SolvedLoads(solved)
 
-    def results(self, call: Call, solved: list[SolvedPitches]) -> Results:
-        """The table of all loads."""
-        figures = pitch_figures(solved)
+    def results(self, call: Call, solved: SolvedLoads) -> Results:
+        """The table of all loads that have figures."""
+        figures = pitch_figures(solved.pitches)
         rows = [row for case, each in zip(load_cases(self.scene), figures) for row in _rows(case, each)]
-        timings = sum((load.timings for load in solved), Timings())
-        return Results(self.scene, [LOSSES.of(rows)], [*loss_warnings(self.scene, solved, figures)], timings=timings)
+        timings = sum((load.timings for load in solved.pitches), Timings())
+        said = [*loss_warnings(self.scene, solved.pitches, figures), *filter(None, [solved.left_out])]
+        return Results(self.scene, [LOSSES.of(rows)], said, timings=timings)
 
     def _check_parts(self, call: Call, parts: Mapping[str, Scene]) -> None:
         """Raises ArchiveError, before anything is removed, where stored positions belong to another scene. On rank 0

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from evolvent.commands.app import main
+from evolvent.gears.line.line_result import EdgeContact
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.drawing.style import png_of
 from evolvent.run.kinds.losses import LOSSES, Losses, LossRow, losses_figure
@@ -74,6 +75,18 @@ def test_warnings_are_those_of_the_heaviest_torque(tmp_path: Path) -> None:
     assert any(each.startswith("Tip-edge contact at ") and "under 340 N·m" in each for each in said)
     assert any(each.startswith("under 340 N·m: Positions are 0.90° apart") for each in said)
     assert any(each.startswith("dynamics.operating_rpm: without effect on losses.csv") for each in said)
+
+
+def test_loads_that_edges_bear_are_left_out_in_line_contact(tmp_path: Path) -> None:
+    """Problem: reliefs of 4 µm, used up by the whole torque of He's pair but not by a tenth of it. Right: the light
+    load has its row, a sentence says why the others have none; an error where there is no other load."""
+    settings = ("pinion.tip_relief_um=4", "wheel.tip_relief_um=4", "mesh.level=line", "sweep.positions=8")
+    said = quietly(Losses.of(spur_scene(*SMALL, *settings), (10.0, 100.0, 120.0)), tmp_path / "some")
+    assert [row.torque_Nm for row in LOSSES.read(tmp_path / "some")] == [17.0]
+    (left_out,) = [sentence for sentence in said if sentence.startswith("Loads from 170 N·m on are left out")]
+    assert "relieve the tips" in left_out
+    with pytest.raises(EdgeContact):
+        quietly(Losses.of(spur_scene(*SMALL, *settings), (100.0,)), tmp_path / "none")
 
 
 def test_a_picture_without_error_bars(tmp_path: Path) -> None:

@@ -152,7 +152,7 @@ class Losses(Computation[SolvedLoads]):
 
     def solve(self, call: Call) -> SolvedLoads:
         """Both pitches under each load, on gears that are condensed once, see `Computation.solve`. In line contact
-        loads are left out from the one on under which edges of tips bear. Raises EdgeContact where it is the lightest."""
+        loads are left out from the one on under which edges of tips bear; EdgeContact where it is the lightest."""
         parts = {PART.format(number): scene for number, scene in enumerate(self.sized)}
         call.on_first(lambda: self._check_parts(call, parts))
         gears = SharedGears([gear_problem(scene) for scene in parts.values()])

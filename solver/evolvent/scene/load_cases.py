@@ -75,7 +75,11 @@ def under_cases(scene: Scene) -> dict[LoadCase, Scene]:
     all of them: in space where one of them is misaligned. Raises SceneError where one of them is refused."""
     cases = load_cases(scene)
     served = cases[0].torque_Nm, cases[-1].torque_Nm
-    under = {case: _under_case(scene, case, served) for case in cases}
+    bare = scene.changed("load", percents=()).model_copy(update={"load_case": ()})
+    under = {
+        case: under_torque(bare.changed("pair", misalignment_um=case.misalignment_um), case.torque_Nm, served)
+        for case in cases
+    }
     plane = [gear_problem(each).is_plane for each in under.values()]
     if all(plane):
         return under
@@ -94,19 +98,6 @@ def in_space_sentence(scene: Scene, under: Iterable[Scene]) -> Iterator[str]:
             "In space under all loads, as the pair is misaligned under some: the transmission error of a spur pair "
             "differs from that in the plane by some per cent."
         )
-
-
-def _under_case(scene: Scene, case: LoadCase, served: tuple[float, float]) -> Scene:
-    """The scene under one of its loads. served: torques of its meshes [N·m]. Raises SceneError, which names the load
-    case."""
-    bare = scene.changed("load", percents=()).model_copy(update={"load_case": ()})
-    try:
-        return under_torque(bare.changed("pair", misalignment_um=case.misalignment_um), case.torque_Nm, served)
-    except SceneError as error:
-        if not scene.load_case:
-            raise
-        problems = [replace(each, key=f"load case {case.name}: {each.key}") for each in error.problems]
-        raise SceneError(problems) from error
 
 
 def under_torque(scene: Scene, torque: float, mesh_torques: tuple[float, float] | None = None) -> Scene:

@@ -115,26 +115,25 @@ class Scene(SceneSection):
         return self
 
     @model_validator(mode="after")
-    def _contact_has_a_width(self) -> Self:
-        unit = self.changed("load", torque_Nm=1.0).hertz_estimate()
-        half_width = float(unit.half_width(0.0)) * math.sqrt(self.load.torque_Nm)
-        if not half_width >= NARROWEST_CONTACT:
-            least = (NARROWEST_CONTACT / float(unit.half_width(0.0))) ** 2
-            found = f"{shown(self.load.torque_Nm)} (Hertz half-width {half_width:.3g} mm)"
-            allowed = f"from {least:.3g} N·m on for these gears, a half-width of {NARROWEST_CONTACT:g} mm"
-            remedy = "raise the torque, or check that it is in N·m and material.E_GPa in GPa"
-            raise validation_error(InputProblem("load.torque_Nm", found, allowed, remedy))
+    def _torques_suit_the_gears(self) -> Self:
+        unit = float(self.changed("load", torque_Nm=1.0).hertz_estimate().half_width(0.0))
+        remedy = "the torque, or check that it is in N·m and material.E_GPa in GPa"
+        for name, torque in self._torques():
+            if not (half_width := unit * math.sqrt(torque)) >= NARROWEST_CONTACT:
+                least = (NARROWEST_CONTACT / unit) ** 2
+                found = f"{shown(torque)} (Hertz half-width {half_width:.3g} mm)"
+                allowed = f"from {least:.3g} N·m on for these gears, a half-width of {NARROWEST_CONTACT:g} mm"
+                raise validation_error(InputProblem(name, found, allowed, f"raise {remedy}"))
+            if excess := overload(self.changed("load", torque_Nm=torque).hertz_estimate(), self.materials()):
+                found, most = f"{shown(torque)} ({excess.why})", rounded_down(torque * excess.allowed_share)
+                allowed = f"up to {most} N·m for these gears, as strains must stay small"
+                raise validation_error(InputProblem(name, found, allowed, f"lower {remedy}"))
         return self
 
-    @model_validator(mode="after")
-    def _strain_is_small(self) -> Self:
-        if excess := overload(self.hertz_estimate(), self.materials()):
-            found = f"{shown(self.load.torque_Nm)} ({excess.why})"
-            most = self.load.torque_Nm * excess.allowed_share
-            allowed = f"up to {rounded_down(most)} N·m for these gears, as strains must stay small"
-            remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
-            raise validation_error(InputProblem("load.torque_Nm", found, allowed, remedy))
-        return self
+    def _torques(self) -> list[tuple[str, float]]:
+        """Dotted keys of all torques [N·m]."""
+        listed = [(f"load_case[{number}].torque_Nm", each.torque_Nm) for number, each in enumerate(self.load_case)]
+        return [("load.torque_Nm", self.load.torque_Nm), *listed]
 
     @model_validator(mode="after")
     def _vibration_is_possible(self) -> Self:

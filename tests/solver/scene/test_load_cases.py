@@ -87,7 +87,9 @@ def test_misaligned_load_case_is_the_misaligned_scene() -> None:
     assert not list(in_space_sentence(other, under_cases(other).values()))
 
 
-def test_a_refused_load_case_is_named() -> None:
-    """A torque whose contact has no width."""
-    with pytest.raises(SceneError, match=r"load case b: load\.torque_Nm: found "):
-        under_cases(spur_scene(cases("torque_Nm = 90.0", "torque_Nm = 1e-6")))
+@pytest.mark.parametrize(("torque", "why"), [("1e-9", "Hertz half-width"), ("9e5", "teeth bend by about")])
+def test_a_torque_of_a_load_case_is_one_of_the_scene(torque: str, why: str) -> None:
+    """Too small for a contact with a width, too large for small strains: its load case is named, before any command
+    begins."""
+    with pytest.raises(SceneError, match=rf": load_case\[1\]\.torque_Nm: found [^;]*\({why}.* for these gears"):
+        spur_scene(cases("torque_Nm = 90.0", f"torque_Nm = {torque}"))

@@ -11,7 +11,7 @@ from evolvent.run.study.plan.study_file import StudyFile
 from evolvent.scene.scene import Scene, SceneError, scene_from_text
 from evolvent.scene.schema.errors import InputProblem, key_problem, keys_of, section_of
 from evolvent.scene.schema.guesses.gear_terms import GEAR_TERMS
-from evolvent.scene.schema.guesses.other_terms import OTHER_TERMS, SECTION_TERMS, STUDY_TERMS
+from evolvent.scene.schema.guesses.other_terms import LIST_TERMS, OTHER_TERMS, SECTION_TERMS, STUDY_TERMS
 from evolvent.scene.schema.guesses.terms import Term
 from evolvent.scene.schema.guesses.units import stem_of
 from tests.support.running.scene_effects import BARE
@@ -67,7 +67,7 @@ def test_each_word_of_the_tables_names_its_keys(term: Term) -> None:
 
 def test_keys_of_the_tables_are_keys() -> None:
     """Each key that a table names is one of the scene, or a section; a term without a key says why."""
-    for term in (*TERMS, *SECTION_TERMS):
+    for term in (*TERMS, *SECTION_TERMS, *LIST_TERMS):
         for key in term.keys:
             assert key.replace("gear.", "pinion.", 1) in KEYS.keys() | SECTIONS, key
         assert term.keys or term.note

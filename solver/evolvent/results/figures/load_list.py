@@ -17,6 +17,8 @@ PANELS = (
     ("mesh_stiffness_N_per_mm_um", "mean tangent mesh stiffness [N/(mm·µm)]"),
 )
 """Key of each figure and label of its axis."""
+LONGEST = 12
+"""Largest number of letters of a load case's name for which there is room beside the curves."""
 
 
 def loads_figure(results: Sequence[LoadResult]) -> Figure:
@@ -72,7 +74,8 @@ def _draw_curves(axes: Axes, results: Sequence[LoadResult]) -> None:
     """Transmission error over the pitch, minus its mean, under each load."""
     for each, colour in zip(results, torque_colours(len(results))):
         varying = np.array(each.transmission_error)
-        label = f"{each.row.case}, {each.row.torque_Nm:.4g} N·m"
+        name = each.row.case if len(each.row.case) <= LONGEST else f"{each.row.case[:LONGEST]}…"
+        label = f"{name}, {each.row.torque_Nm:.4g} N·m"
         axes.plot(each.angle, varying - varying.mean(), color=colour, marker=".", label=label)
     axes.set_xlabel("pinion rotation [°]")
     axes.set_ylabel("transmission error minus its mean [µm]")

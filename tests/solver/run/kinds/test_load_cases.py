@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ import pytest
 
 from evolvent.commands.app import Exit, main
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS
+from evolvent.gears import shared_gears
 from evolvent.results.archive.store import ArchiveError
 from evolvent.results.tables.load_table import LOADS
 from evolvent.results.tables.table import Table
@@ -32,7 +34,7 @@ from tests.support.computing.interruption import Interrupted, interrupted
 from tests.support.computing.quiet import quietly
 from tests.support.computing.redrawn import redrawn
 from tests.support.computing.same_tables import same_tables
-from tests.support.gear_cases import HELICAL, QUIET, spur_scene
+from tests.support.gear_cases import HELICAL, QUIET, helical_scene, spur_scene
 from tests.support.recorded_tables import assert_same_rows
 from tests.support.running.processes import RunScript
 
@@ -84,14 +86,26 @@ def test_load_cases_are_the_percents_that_they_are(kind: type[Computation[Any]],
         assert_same_rows(unnamed(named), unnamed(parts), 1e-8)
 
 
-def test_misaligned_load_case_has_the_figures_of_the_misaligned_pair(tmp_path: Path) -> None:
-    """Problem: a narrow helical pair under one torque, aligned and open by 15 µm. Exact: the scene with 15 µm. It bears
-    more on one end than the aligned one."""
+@pytest.mark.parametrize("scene", [helical_scene, helical_line])
+def test_misaligned_load_case_has_the_figures_of_the_misaligned_pair(
+    scene: Callable[..., Scene], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Problem: a narrow helical pair under one torque, aligned and open by 15 µm, with the contact resolved and in line
+    contact. Exact: the scene with 15 µm. Both are on gears that are condensed once; the open pair bears more on one
+    end."""
+    calls, condensed = [], shared_gears.condensed_gears
+
+    def counted(*given: Any, **named: Any) -> Any:
+        calls.append(given)
+        return condensed(*given, **named)
+
+    monkeypatch.setattr(shared_gears, "condensed_gears", counted)
     openings = {"a": 0, "b": 15}
     cases = (f'{{name = "{name}", torque_Nm = 120.0, misalignment_um = {um}}}' for name, um in openings.items())
     one = "contact.friction=0.1"
-    quietly(Loads.of(helical_line(one, f"load_case=[{', '.join(cases)}]")), tmp_path / "both")
-    quietly(Loads.of(helical_line(one, "pair.misalignment_um=15"), (100.0,)), tmp_path / "open")
+    quietly(Loads.of(scene(one, f"load_case=[{', '.join(cases)}]")), tmp_path / "both")
+    assert len(calls) == 1
+    quietly(Loads.of(scene(one, "pair.misalignment_um=15"), (100.0,)), tmp_path / "open")
     aligned, tilted = LOADS.read(tmp_path / "both")
     assert (aligned.case, aligned.misalignment_um) == ("a", 0.0)
     assert_same_rows(unnamed([tilted]), unnamed(LOADS.read(tmp_path / "open")), 1e-8)

@@ -73,7 +73,7 @@ class LineRow:
     peak_to_peak_inside: int
     """1 where the error bar of the peak-to-peak transmission error holds its deviation, else 0."""
     face_load_inside: int
-    """1 where the error bar of K_Hβ holds its deviation, else 0; 1 in the plane."""
+    """1 where the error bar of K_Hβ holds its deviation on the layers of the resolved mesh, else 0; 1 in the plane."""
     resolved_seconds: float
     """Processor time of condensing and positions, all torques of the pair."""
     line_seconds: float
@@ -122,7 +122,7 @@ def rows_beside(case: Case, resolved: ResolvedPitch) -> Iterator[LineRow]:
         force = torque / lines.base_radius / lines.width_factor
         found = [LineResult.of(position, force) for position in positions]
         bar = float(facts.face_load_factor_error[j])
-        both = _Both(case, resolved.under[j], found, mesh, curves[j], (float(facts.face_load_factor[j]), bar), j)
+        both = _Both(case, resolved.under[j], found, mesh, curves[j], bar, j)
         yield both.row(torque, unloaded, (resolved.seconds, seconds))
 
 
@@ -136,8 +136,8 @@ class _Both:
     mesh: LoadedMesh
     curves: Mapping[str, PitchCurve]
     """Quantities of the line contact with their error bars."""
-    printed: tuple[float, float]
-    """K_Hβ of the line contact as printed, and its error; nan in the plane."""
+    face_load_error: float
+    """Error of K_Hβ of the line contact; nan in the plane."""
     number: int
     """Index of the torque."""
 
@@ -158,7 +158,7 @@ class _Both:
             100.0 * by_load, 100.0 * float(self.mesh.line.on_edges[:, self.number].max()),
             int((1e3 * np.abs(off) <= self.curves[LOADED].bars).sum()),
             int(1e3 * abs(peak_off) <= self.curves[LOADED].varying_error(lambda values: float(np.ptp(values)))),
-            int(np.isnan(self.printed[0]) or abs(self.printed[0] - factors[0]) <= self.printed[1]), *seconds,
+            int(np.isnan(self.face_load_error) or abs(factors[1] - factors[0]) <= self.face_load_error), *seconds,
         )
 
     def _tooth_forces(self) -> float:

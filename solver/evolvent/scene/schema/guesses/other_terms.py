@@ -45,8 +45,8 @@ OTHER_TERMS: tuple[Term, ...] = (
          "over the whole life"),
     Term("load_case.title load_case.id load_case.label", ("load_case.name",)),
     Term("torque_on loaded_gear torque_gear load.gear load.side", ("load.on",)),
-    Term("driver driving_gear driving_member driven driven_gear drive_gear input_gear input input_on output_gear "
-         "driving_wheel power_flow load.direction sweep.direction sense_of_rotation direction_of_rotation "
+    Term("driver driving drives driving_gear driving_member driven driven_gear drive_gear input_gear input input_on "
+         "output_gear driving_wheel power_flow load.direction sweep.direction sense_of_rotation direction_of_rotation "
          "rotation_direction rotation_sense turning_direction load.reverse reversed load.coast speed_increaser step_up",
          ("load.driving",), "the flanks that bear are the same"),
     Term("mu friction friction_coefficient coefficient_of_friction cof coulomb friction_factor contact.coefficient "

@@ -107,10 +107,11 @@ class LoadRuns:
     """Name of the table's file."""
 
     def read(self, folder: Path) -> list[LoadResult]:
-        """The runs in folders below that of the table, the lightest load first. Raises ArchiveError, SceneError,
-        OSError."""
+        """The runs of the table that have folders below its own, the lightest load first. Raises ArchiveError,
+        SceneError, OSError."""
         named, listed = {row.case for row in LOADS.read(folder)}, load_cases(kept_scene(folder / "scene.toml"))
-        return load_results(folder, [case for case in listed if case.name in named])
+        there = [case for case in listed if (folder / run_folder(case) / "summary.json").exists()]
+        return load_results(folder, [case for case in there if case.name in named])
 
 
 def load_results(folder: Path, cases: Iterable[LoadCase]) -> list[LoadResult]:

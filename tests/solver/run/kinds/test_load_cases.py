@@ -12,6 +12,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 import pytest
@@ -20,7 +21,7 @@ from evolvent.commands.app import Exit, main
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS
 from evolvent.gears import shared_gears
 from evolvent.results.archive.store import ArchiveError
-from evolvent.results.tables.load_table import LOADS
+from evolvent.results.tables.load_table import LOADS, LoadRuns
 from evolvent.results.tables.table import Table
 from evolvent.run.computation import Computation
 from evolvent.run.design.checked import BEST
@@ -133,7 +134,7 @@ def test_power_is_lost_at_the_speed_of_the_load_case(tmp_path: Path) -> None:
 def test_runs_of_load_cases_are_resumed_and_drawn_again(tmp_path: Path) -> None:
     """Interrupted after half of the results: the tables of a call that was not; each load case has a folder by its
     name; the scene of the folder repeats the list; pictures are drawn again byte by byte. A load case of another name
-    is another run, of another torque another scene."""
+    is another run, of another torque another scene; a run whose folder has gone is left out of the picture."""
     drawn = line_scene(DUTY, "output.pictures=true")
     with interrupted(0) as counts:
         quietly(Loads.of(drawn), tmp_path / "whole")
@@ -153,6 +154,8 @@ def test_runs_of_load_cases_are_resumed_and_drawn_again(tmp_path: Path) -> None:
     with pytest.raises(ArchiveError, match=r"load\.torque_Nm = 160 \(kept: 170\)"):
         quietly(Loads.of(line_scene(DUTY.replace("slow\", torque_Nm = 170", "slow\", torque_Nm = 160"))),
                 tmp_path / "whole", resume=True)
+    rmtree(tmp_path / "half/load_light")
+    assert [each.row.case for each in LoadRuns().read(tmp_path / "half")] == ["slower", "fast"]
 
 
 def test_losses_of_other_load_cases_are_named(tmp_path: Path) -> None:

@@ -50,6 +50,7 @@ DUTY = (
     '{name = "fast", torque_Nm = 170.0, speed_rpm = 3000.0, share_of_life = 0.5}, '
     '{name = "light", torque_Nm = 85.0, share_of_life = 0.25}]'
 )
+BARE = "output.error_bars=false"
 TILTED = 'load_case=[{name = "a", torque_Nm = 85.0}, {name = "b", torque_Nm = 170.0, misalignment_um = 5.0}]'
 VARY = 'design.vary=[["both.tip_relief_um",16.0,24.0,4.0]]'
 TABLES: dict[type[Computation[Any]], tuple[Table[Any], ...]] = {
@@ -135,21 +136,21 @@ def test_runs_of_load_cases_are_resumed_and_drawn_again(tmp_path: Path) -> None:
     """Interrupted after half of the results: the tables of a call that was not; each load case has a folder by its
     name; the scene of the folder repeats the list; pictures are drawn again byte by byte. A load case of another name
     is another run, of another torque another scene; a run whose folder has gone is left out of the picture."""
-    drawn = line_scene(DUTY, "output.pictures=true")
+    drawn, plain = (line_scene(DUTY, BARE, f"output.pictures={each}") for each in ("true", "false"))
     with interrupted(0) as counts:
         quietly(Loads.of(drawn), tmp_path / "whole")
     with interrupted(counts["stored"] // 2), pytest.raises(Interrupted):
-        quietly(Loads.of(line_scene(DUTY)), tmp_path / "half")
-    quietly(Loads.of(line_scene(DUTY)), tmp_path / "half", resume=True)
+        quietly(Loads.of(plain), tmp_path / "half")
+    quietly(Loads.of(plain), tmp_path / "half", resume=True)
     assert same_tables(tmp_path / "half", tmp_path / "whole")
     folders = sorted(path.parent.name for path in (tmp_path / "whole").glob("*/summary.json"))
     assert folders == ["load_fast", "load_light", "load_slow"]
     assert Loads.of(load_scene(tmp_path / "whole/scene.toml")) == Loads.of(drawn)
     assert redrawn(tmp_path / "whole", tmp_path) == {"loads.png"}
     with interrupted(0) as counts:
-        quietly(Loads.of(line_scene(DUTY.replace("3000.0", "2500.0"))), tmp_path / "half", resume=True)
+        quietly(Loads.of(line_scene(DUTY.replace("3000.0", "2500.0"), BARE)), tmp_path / "half", resume=True)
         assert counts["stored"] == 0  # the speed is in the tables alone
-        quietly(Loads.of(line_scene(DUTY.replace("slow", "slower"))), tmp_path / "half", resume=True)
+        quietly(Loads.of(line_scene(DUTY.replace("slow", "slower"), BARE)), tmp_path / "half", resume=True)
         assert counts["stored"] > 0
     with pytest.raises(ArchiveError, match=r"load\.torque_Nm = 160 \(kept: 170\)"):
         quietly(Loads.of(line_scene(DUTY.replace("slow\", torque_Nm = 170", "slow\", torque_Nm = 160"))),
@@ -204,7 +205,7 @@ def test_loads_in_space_are_said() -> None:
 
 def small(kind: type[Computation[Any]]) -> Computation[Any]:
     """A list of three load cases."""
-    return kind.of(line_scene(DUTY, "output.error_bars=false"))
+    return kind.of(line_scene(DUTY, BARE))
 
 
 @pytest.mark.mpi

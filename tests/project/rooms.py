@@ -181,8 +181,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.kinds": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.gears.modifications", "fem.parallel", "gears",
-        "gears.pressure", "gears.problem", "gears.solution", "gears.sweep", "scene", "scene.schema", "results.*",
-        "check", "dynamics.*", "strength.*", "wear.results", "run", "run.strength", "run.dynamics",
+        "gears.line", "gears.pressure", "gears.problem", "gears.solution", "gears.sweep", "scene", "scene.schema",
+        "results.*", "check", "dynamics.*", "strength.*", "wear.results", "run", "run.strength", "run.dynamics",
         "run.dynamics.transient", "run.design",
     ),
     "run.study.plan": (

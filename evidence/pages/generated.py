@@ -50,7 +50,8 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "evidence.md": {"bars": bars, "face-load": face_load.table(docs)},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "line_contact.md": {
-            "face-ends": face_ends.said(docs), "accuracy": accuracy.said(docs), "friction": friction.said(docs),
+            "face-ends": face_ends.said(docs), "accuracy": accuracy.said(docs),
+            "beyond": accuracy.beyond(docs), "friction": friction.said(docs),
             "edges": edges.said(docs), "starts": starts.said(docs),
         },
         docs / "studies.md": {

@@ -231,6 +231,42 @@ def said(docs: Path) -> str:
     return TABLE.markdown(TABLE.read(docs / "line_contact" / "accuracy.csv"))
 
 
+BARS: tuple[tuple[str, str, float], ...] = (
+    ("a position", "position_percent", 0.3), ("tooth forces", "tooth_force_percent", 0.5),
+    ("line load", "line_load_percent", 3.0), ("line load at the ends of the face", "line_load_end_percent", 5.0),
+    ("K_Hβ", "face_load_percent", 1.0), ("stiffness", "stiffness_percent", 0.5), ("p_0", "pressure_percent", 1.5),
+    ("p_0 by the load", "pressure_by_load_percent", 1.5),
+)
+"""Figure, its column and its bar [%]."""
+PEAK_BAR_PERCENT, PEAK_BAR_UM = 1.0, 0.02
+"""Bars of the peak-to-peak transmission error, of which the larger one counts."""
+
+
+def beyond(docs: Path) -> str:
+    """Sentence of docs/line_contact.md on rows beyond the bars, of those where no edge bears."""
+    rows = [row for row in TABLE.read(docs / "line_contact" / "accuracy.csv") if row.on_edges_percent < 1.0]
+    off = [max(0.0, abs(row.peak_to_peak_off_um) - PEAK_BAR_UM) and _peak_off_percent(row) for row in rows]
+    parts = [_part("peak to peak", off, PEAK_BAR_PERCENT)]
+    for name, column, bar in BARS:
+        parts.append(_part(name, [abs(getattr(row, column)) for row in rows], bar))
+    held = sum(row.inside for row in rows), sum(row.positions for row in rows)
+    return (
+        f"Beyond the bars, of {len(rows)} rows: {'; '.join(filter(None, parts))}. Error bars hold at {held[0]} of "
+        f"{held[1]} positions, of {sum(row.peak_to_peak_inside for row in rows)} peak-to-peak values and of "
+        f"{sum(row.face_load_inside for row in rows)} face load factors."
+    )
+
+
+def _peak_off_percent(row: LineRow) -> float:
+    return 100.0 * abs(row.peak_to_peak_off_um) / row.peak_to_peak_um
+
+
+def _part(name: str, off: list[float], bar: float) -> str:
+    """Words on the deviations [%] beyond a bar; empty where there is none."""
+    over = [each for each in off if each > bar]
+    return f"{name} {len(over)}, by up to {max(over):.2g} for {bar:g} %" if over else ""
+
+
 def main() -> None:
     """Measures all pairs; each row is kept as soon as it is there."""
     parser = argparse.ArgumentParser(description=__doc__)

@@ -89,6 +89,14 @@ def scene_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:
     return _under(scene, parts_of_torque(scene, sorted(percents)))
 
 
+def _resized(scene: Scene, torque: float) -> Scene:
+    """The scene with another torque [N·m], of which its list of percentages names the same loads. Raises SceneError."""
+    own, percents = scene.load.torque_Nm, scene.load.percents
+    if torque == own:
+        return scene
+    return under_torque(scene.changed("load", percents=tuple(each * own / torque for each in percents)), torque)
+
+
 def _under(scene: Scene, cases: Sequence[LoadCase]) -> SceneTorques:
     """The scene under some loads, the lightest first; those of one torque are one. Meshes are sized for its own torque
     or, where this lies outside the list, for the nearest one of that; for lighter ones where the scene says so
@@ -100,7 +108,7 @@ def _under(scene: Scene, cases: Sequence[LoadCase]) -> SceneTorques:
     for torque in (torques[0], torques[-1]):  # the limits of a torque are those of a range
         under_torque(scene, torque)
     if scene.load.mesh_torques_Nm is None:
-        scene = under_torque(scene, min(max(scene.load.torque_Nm, torques[0]), torques[-1]))
+        scene = _resized(scene, min(max(scene.load.torque_Nm, torques[0]), torques[-1]))
     return SceneTorques(
         scene.model_copy(update={"wear": None}), tuple(1e3 * torque for torque in torques),
         tuple(", ".join(each) for each in names.values()),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from evolvent.gears.meshing.levelled_meshes import flank_cells
-from evolvent.run.dynamics.scene_torques import scene_torques
+from evolvent.run.dynamics.scene_torques import listed_torques, scene_torques
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import SceneError
 from evolvent_meshes.gears.member import Member
@@ -29,6 +29,15 @@ def test_meshes_are_those_of_the_scenes_torque() -> None:
 def test_lists_beside_the_scenes_torque(percents: list[float], sized: float) -> None:
     """The nearest torque of the list."""
     assert scene_torques(spur_scene(), percents).problem.torque == pytest.approx(sized)
+
+
+@pytest.mark.parametrize("percents", [(50.0,), (5.0, 50.0), (150.0, 200.0), (40.0, 100.0)])
+def test_the_scene_lists_the_same_torques(percents: tuple[float, ...]) -> None:
+    """Exact: the scene that is kept with the results, read again, has the torques of the results, also where its own
+    torque is now the nearest one of the list."""
+    loads = listed_torques(spur_scene(), percents)
+    assert listed_torques(loads.scene, ()).torques == pytest.approx(loads.torques, rel=1e-12)
+    assert loads.torques == pytest.approx([1.7e3 * each for each in percents], rel=1e-12)
 
 
 def test_scene_may_ask_for_meshes_of_lighter_torques() -> None:

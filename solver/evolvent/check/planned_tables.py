@@ -1,9 +1,10 @@
-"""Tables of `evolvent check` on the sections that commands beyond `evolvent run` read: [dynamics], [transient],
-[fatigue] and [design]. Each table stands where the scene has its section."""
+"""Tables of `evolvent check` on the sections that commands beyond `evolvent run` read: [[load_case]], [dynamics],
+[transient], [fatigue] and [design]. Each table stands where the scene has its section."""
 
 from __future__ import annotations
 
 from evolvent.check.design_rows import DEVIATES, VARIES, design_rows, tolerance_rows, varying_rows
+from evolvent.check.load_rows import LOADS, load_rows
 from evolvent.check.text_table import table
 from evolvent.check.transient_rows import STEPS, step_lines, transient_lines
 from evolvent.scene.scene import GEARS, Scene
@@ -12,8 +13,10 @@ from evolvent.strength.fatigue.criterion import criteria_of
 
 
 def planned_tables(scene: Scene) -> list[str]:
-    """Tables on the sections [dynamics], [transient], [fatigue] and [design], where the scene has them."""
-    return [*_vibration(scene), *_transient(scene), *_fatigue(scene), *_design(scene)]
+    """Tables on the sections [[load_case]], [dynamics], [transient], [fatigue] and [design], where the scene has
+    them."""
+    loads = [table(LOADS[0], load_rows(scene), LOADS[1])] if scene.load_case else []
+    return [*loads, *_vibration(scene), *_transient(scene), *_fatigue(scene), *_design(scene)]
 
 
 def _vibration(scene: Scene) -> list[str]:

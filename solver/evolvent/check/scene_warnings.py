@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from evolvent.check.design_rows import design_warnings
+from evolvent.check.load_rows import load_warnings
 from evolvent.check.transient_rows import transient_warnings
 from evolvent.gears.meshing.element_sizes import (
     STIFF_ELEMENTS,
@@ -43,6 +44,7 @@ def scene_warnings(scene: Scene) -> Iterator[str]:
             "better choice."
         )
     yield from transient_warnings(scene)
+    yield from load_warnings(scene)
     yield from design_warnings(scene)
     if scene.dynamics is not None:
         from evolvent.check.vibration_rows import vibration_warnings  # Numba takes a second to import

@@ -36,7 +36,7 @@ def design_lines(folder: Path) -> Iterator[str]:
     of the resolved contact."""
     variants, rows = DESIGN.read(folder), BEST.read(folder)
     counts = [sum(row.status in each for row in variants) for each in ((ALLOWED, FRONT), (EDGES,))]
-    yield f"{len(variants)} variants, {counts[0]} of them allowed, of {counts[1]} edges of tips bear"
+    yield f"{len(variants)} variants with the scene: {counts[0]} allowed, {counts[1]} whose edges of tips bear"
     best = [row for row in rows if row.rank == 1]
     if best:
         yield f"best: variant {best[0].variant}, {modifications(variants[best[0].variant], variants)}"

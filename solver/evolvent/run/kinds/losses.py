@@ -47,6 +47,8 @@ class LossRow:
     """Torque on the gear that the scene names."""
     torque_on: str
     """Gear on which the torque is held constant, pinion or wheel."""
+    driving: str
+    """Gear that drives: its power is the input."""
     speed_rpm: float
     """Speed of the pinion in the load case; NaN where it is not given."""
     share_of_life: float
@@ -87,10 +89,10 @@ LOSSES_PICTURE = TablePicture("losses.png", (SCENE_TITLE, LOSSES), "evolvent.run
 
 
 def loss_lines(out: Path) -> Iterator[str]:
-    """Loss under the heaviest torque at each friction coefficient."""
+    """Loss under each load case, of a list of percentages under the heaviest torque, at each friction coefficient."""
     rows = LOSSES.read(out)
     heaviest = max(row.torque_Nm for row in rows)
-    for row in (row for row in rows if row.friction and row.torque_Nm == heaviest):
+    for row in (row for row in rows if row.friction and (row.torque_Nm == heaviest or row.case[-1] != "%")):
         percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
         power = f"{plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)} W at {SPEED:g} r/min"
         if math.isfinite(row.speed_rpm):
@@ -98,8 +100,8 @@ def loss_lines(out: Path) -> Iterator[str]:
         factor = plus_minus(row.tooth_loss_factor, row.tooth_loss_factor_error, 4)
         beside = "" if math.isnan(row.ohlendorf_loss_factor) else f" (Ohlendorf {row.ohlendorf_loss_factor:.4f})"
         yield (
-            f"{row.case}, {row.torque_Nm:.4g} N·m on the {row.torque_on}, μ = {row.friction:g}: loss {percent} % of "
-            f"the input, {power}; tooth loss factor {factor}{beside}"
+            f"{row.case}, {row.torque_Nm:.4g} N·m on the {row.torque_on}, {row.driving} drives, μ = {row.friction:g}: "
+            f"loss {percent} % of the input, {power} of the pinion; tooth loss factor {factor}{beside}"
         )
 
 
@@ -194,8 +196,8 @@ def _rows(case: LoadCase, figures: PitchFigures) -> Iterator[LossRow]:
         factor, factor_bar = (each / row.friction if row.friction else math.nan for each in (loss, bar))
         taken, lost, off = passed / delivered, passed * loss / delivered, passed * bar / delivered**2
         yield LossRow(
-            case=case.name, torque_Nm=load.torque_Nm, torque_on=load.on, speed_rpm=speed, share_of_life=share,
-            misalignment_um=case.misalignment_um, friction=row.friction, loss_percent=100.0 * loss,
+            case=case.name, torque_Nm=load.torque_Nm, torque_on=load.on, driving=load.driving, speed_rpm=speed,
+            share_of_life=share, misalignment_um=case.misalignment_um, friction=row.friction, loss_percent=100.0 * loss,
             loss_percent_error=100.0 * bar, input_at_1000_rpm_W=taken, loss_at_1000_rpm_W=lost,
             loss_at_1000_rpm_W_error=off, input_W=taken * speed / SPEED, loss_W=lost * speed / SPEED,
             loss_W_error=off * speed / SPEED, tooth_loss_factor=factor, tooth_loss_factor_error=factor_bar,

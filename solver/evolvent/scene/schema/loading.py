@@ -79,7 +79,8 @@ class LoadSection(SceneSection):
     )
 
     percents: tuple[Annotated[float, Field(gt=0, le=1000)], ...] = key(
-        "torques of `evolvent loads`, `losses` and `excitation`, in percent of load.torque_Nm; --percent replaces them",
+        "torques of `evolvent loads`, `losses`, `excitation` and `design`, in percent of load.torque_Nm; --percent "
+        "replaces them",
         PERCENTS, "25, 50 and 100, for example; by default the command has a list of its own", default=(),
         max_length=MOST_TORQUES,
     )

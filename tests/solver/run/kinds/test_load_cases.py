@@ -128,8 +128,8 @@ def test_power_is_lost_at_the_speed_of_the_load_case(tmp_path: Path) -> None:
     assert fast.loss_percent == pytest.approx(slow.loss_percent, rel=1e-8)
     assert all(math.isnan(value) for value in (light.speed_rpm, light.input_W, light.loss_W, light.loss_W_error))
     said = list(loss_lines(tmp_path))
-    assert said[0].startswith("slow, 170 N·m on the pinion") and f"{slow.loss_W:.1f} ± " in said[0]
-    assert "W at 500 r/min" in said[0] and "W at 3000 r/min" in said[1] and len(said) == 2
+    assert said[1].startswith("slow, 170 N·m on the pinion") and f"{slow.loss_W:.1f} ± " in said[1]
+    assert "W at 500 r/min" in said[1] and "W at 3000 r/min" in said[2] and len(said) == 3
 
 
 def test_runs_of_load_cases_are_resumed_and_drawn_again(tmp_path: Path) -> None:

@@ -113,5 +113,5 @@ def test_last_lines_have_the_loss(tmp_path: Path, capfd: pytest.CaptureFixture[s
     scene = str(ROOT / "demos/he2022.toml")
     assert main(["losses", scene, "--out", str(tmp_path), "--percent", "50,100", *words]) == 0
     (row,) = (row for row in LOSSES.read(tmp_path) if row.torque_Nm == 170.0)
-    wanted = f"170 N·m on the pinion, μ = 0.3: loss {row.loss_percent:.2f} % of the input, "
+    wanted = f"170 N·m on the pinion, pinion drives, μ = 0.3: loss {row.loss_percent:.2f} % of the input, "
     assert wanted in capfd.readouterr().out

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 PART = "torque_{}_"
 """Part of the archive with the positions under a torque, by its number."""
+MOST_NAMED = 6
+"""Largest number of load cases that the foot of the picture names."""
 SPEED = 1000.0
 """Speed of the pinion for which the power is given [r/min]."""
 
@@ -213,8 +215,8 @@ def losses_figure(title: str, rows: Sequence[LossRow]) -> Figure:
     most = max(rows, key=lambda row: row.loss_percent)
     figure = sheet(
         "Friction loss over the torque",
-        f"{title}. At most {most.loss_percent:.3g} % of the input, at {most.torque_Nm:.4g} N·m on the {most.torque_on} "
-        f"and μ = {most.friction:g}, tooth loss factor {most.tooth_loss_factor:.3g}",
+        f"{title}. The {most.driving} drives. At most {most.loss_percent:.3g} % of the input, at {most.torque_Nm:.4g} "
+        f"N·m on the {most.torque_on} and μ = {most.friction:g}, tooth loss factor {most.tooth_loss_factor:.3g}",
     )
     for axes, name, label in zip(
         figure.subplots(1, 2), ("loss_percent", "loss_at_1000_rpm_W"),
@@ -232,5 +234,7 @@ def losses_figure(title: str, rows: Sequence[LossRow]) -> Figure:
         axes.set_ylabel(label)
     axes.legend(loc="best")
     said = ["Bars: estimated error, of mesh and spacing of positions."] * math.isfinite(most.loss_percent_error)
-    foot(figure, *said, "μ is the same at all speeds.")
+    named = dict.fromkeys(f"{row.case} {row.torque_Nm:.4g} N·m" for row in rows if row.case[-1] != "%")
+    listed = [f"Loads: {', '.join(named)}."] if 0 < len(named) <= MOST_NAMED else []
+    foot(figure, *said, *listed, "μ is the same at all speeds.")
     return figure

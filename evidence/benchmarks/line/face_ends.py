@@ -8,15 +8,14 @@ carry, w. The difference of both mean displacements is c ln(w/b) far from the en
 
 from __future__ import annotations
 
-import argparse
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from evidence.checkout import DOCS
-from evidence.tables import Column, Table, write_rows
+from evidence.benchmarks.line.measuring import keep_rows
+from evidence.tables import Column, Table
 from evolvent.fem.body import Body, assemble
 from evolvent.fem.boundary import Fixed
 from evolvent.fem.condensation.mumps import SparseCholesky
@@ -133,15 +132,8 @@ def said(docs: Path) -> str:
 
 def main() -> None:
     """Computes all ends."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--small", action="store_true", help="one end alone, to see that everything works")
-    parser.add_argument("--out", type=Path, default=DOCS)
-    given = parser.parse_args()
-    rows: list[EndRow] = []
-    for angle, ratio in CASES[3:4] if given.small else CASES:
-        rows.append(end_row(angle, ratio))
-        print(rows[-1], flush=True)
-        write_rows(given.out / "line_contact" / "face_ends.csv", rows)
+    small = "one end alone, to see that everything works"
+    keep_rows(__doc__, small, "face_ends", lambda few: (end_row(*each) for each in (CASES[3:4] if few else CASES)))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ contact, at μ = 0 and 0.1 over the same periodic pitch, for docs/line_contact.m
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,9 +11,9 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
+from evidence.benchmarks.line.measuring import keep_rows
 from evidence.benchmarks.line.pairs import ALL
-from evidence.checkout import DOCS
-from evidence.tables import Column, Table, write_rows
+from evidence.tables import Column, Table
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.line.line_sweep import line_sweep
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
@@ -148,16 +147,9 @@ def said(docs: Path) -> str:
 
 
 def main() -> None:
-    """Measures all pairs; each row is kept as soon as it is there."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--small", action="store_true", help="the first pair alone, to see that everything works")
-    parser.add_argument("--out", type=Path, default=DOCS)
-    given = parser.parse_args()
-    rows: list[FrictionRow] = []
-    for each in PAIRS[:1] if given.small else PAIRS:
-        rows.append(friction_row(*each))
-        print(rows[-1], flush=True)
-        write_rows(given.out / "line_contact" / "friction.csv", rows)
+    """Measures all pairs."""
+    small = "the first pair alone, to see that everything works"
+    keep_rows(__doc__, small, "friction", lambda few: (friction_row(*each) for each in PAIRS[: 1 if few else None]))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ docs/line_contact.md."""
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -13,10 +12,10 @@ from unittest.mock import patch
 
 import numpy as np
 
+from evidence.benchmarks.line.measuring import keep_rows
 from evidence.benchmarks.line.pairs import Case, case, relieved
-from evidence.checkout import DOCS
 from evidence.scenes import HELICAL, SPUR
-from evidence.tables import Column, Table, write_rows
+from evidence.tables import Column, Table
 from evolvent.dynamics.excitation.loaded_mesh import searched_positions, under_torques
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.line.line_start import with_line_starts
@@ -179,18 +178,15 @@ def said(docs: Path) -> str:
     return TABLE.markdown(TABLE.read(docs / "line_contact" / "starts.csv"))
 
 
+def rows(small: bool) -> Iterator[StartRow]:
+    """Rows of all pairs, or of two positions of the first one."""
+    for each in [replace(CASES[0], positions=2, percents=(100.0,))] if small else CASES:
+        yield from case_rows(each)
+
+
 def main() -> None:
-    """The command line. Pairs are added to the table one by one."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition(",")[0])
-    parser.add_argument("--small", action="store_true", help="two positions of a pair in the plane")
-    parser.add_argument("--out", type=Path, default=DOCS)
-    given = parser.parse_args()
-    path, rows = given.out / "line_contact" / "starts.csv", list[StartRow]()
-    for each in [replace(CASES[0], positions=2, percents=(100.0,))] if given.small else CASES:
-        for row in case_rows(each):
-            rows.append(row)
-            print(row, flush=True)
-        write_rows(path, rows)
+    """Measures all pairs."""
+    keep_rows((__doc__ or "").partition(",")[0], "two positions of a pair in the plane", "starts", rows)
 
 
 if __name__ == "__main__":

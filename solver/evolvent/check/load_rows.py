@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from evolvent.check.text_table import Row
-from evolvent.scene.load_cases import in_space_sentence, load_cases, under_cases
+from evolvent.scene.load_cases import in_space_sentence, load_cases, misalignment_refusal, under_cases
 from evolvent.scene.scene import Scene, SceneError
 
 LOADS = "Load cases (loads, losses, excitation, design)", ("torque N·m", "r/min", "life", "opening µm")
@@ -25,20 +25,17 @@ def load_warnings(scene: Scene) -> Iterator[str]:
     """Sentences on what the other figures of the check are for, and on load cases that are refused or in space."""
     if not scene.load_case:
         return
-    own = scene.load.torque_Nm
+    own, cases = scene.load.torque_Nm, load_cases(scene)
     yield (
         f"Figures are for load.torque_Nm, {own:g} N·m, and pair.misalignment_um; load cases go up to "
-        f"{load_cases(scene)[-1].torque_Nm:g} N·m."
+        f"{cases[-1].torque_Nm:g} N·m."
     )
     try:
         yield from in_space_sentence(scene, under_cases(scene).values())
     except SceneError as error:
         yield f"`evolvent loads` would refuse this scene: {error}."
-    if len({each.misalignment_um for each in load_cases(scene)}) > 1:
-        yield (
-            "`evolvent excitation` and `design` would refuse this scene: its load cases have different misalignments, "
-            "and the loads of one mesh have one."
-        )
+    if problem := misalignment_refusal(cases):
+        yield f"`evolvent excitation` and `design` would refuse this scene: {problem}."
 
 
 def _known(value: float | None) -> str:

@@ -56,6 +56,16 @@ def load_cases(scene: Scene) -> tuple[LoadCase, ...]:
     return tuple(sorted(given or parts_of_torque(scene, scene.load.percents), key=lambda case: case.torque_Nm))
 
 
+def misalignment_refusal(cases: Sequence[LoadCase]) -> InputProblem | None:
+    """Problem of loads of different misalignment, which have no mesh in common; None where they have one."""
+    misalignments = dict.fromkeys(case.misalignment_um for case in cases)
+    if len(misalignments) == 1:
+        return None
+    found, allowed = shown(list(misalignments)), "one misalignment for all loads of a mesh"
+    remedy = "take a scene for each misalignment, or `evolvent loads` or `losses`, which take all of them"
+    return InputProblem("load_case.misalignment_um", found, allowed, remedy)
+
+
 def parts_of_torque(scene: Scene, percents: Sequence[float]) -> list[LoadCase]:
     """Loads that are parts of a scene's torque [%]."""
     return [

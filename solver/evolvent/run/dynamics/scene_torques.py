@@ -16,9 +16,16 @@ from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.load_cases import LoadCase, load_cases, parts_of_torque, under_torque, with_list
+from evolvent.scene.load_cases import (
+    LoadCase,
+    load_cases,
+    misalignment_refusal,
+    parts_of_torque,
+    under_torque,
+    with_list,
+)
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.errors import InputProblem, SceneError, shown
+from evolvent.scene.schema.errors import SceneError
 
 NARROWEST = 0.35
 """Elements across the contact width from which on error bars hold nine errors in ten: at level quick from 5 % of the
@@ -76,11 +83,8 @@ def listed_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:
     Raises SceneError where one of them is refused, or for loads of different misalignment."""
     listed = with_list(scene, percents)
     cases = load_cases(listed)
-    misalignments = dict.fromkeys(case.misalignment_um for case in cases)
-    if len(misalignments) > 1:
-        found, allowed = shown(list(misalignments)), "one misalignment for all loads of a mesh"
-        remedy = "take a scene for each misalignment, or `evolvent loads` or `losses`, which take all of them"
-        raise SceneError([InputProblem("load_case.misalignment_um", found, allowed, remedy)])
+    if problem := misalignment_refusal(cases):
+        raise SceneError([problem])
     return _under(listed.changed("pair", misalignment_um=cases[0].misalignment_um), cases)
 
 

@@ -85,6 +85,11 @@ class LossRow:
     """Tooth loss factor by Ohlendorf's formula, for teeth that share the load equally: from the numbers of teeth, the
     base helix angle and the contact ratios alone; NaN where less than one or more than two pairs are in contact."""
 
+    @property
+    def is_named(self) -> bool:
+        """Whether the load is a load case of the scene, whose names have no percent sign."""
+        return not self.case.endswith("%")
+
 
 LOSSES = Table("losses.csv", LossRow)
 LOSSES_PICTURE = TablePicture("losses.png", (SCENE_TITLE, LOSSES), "evolvent.run.kinds.losses:losses_figure")
@@ -94,7 +99,7 @@ def loss_lines(out: Path) -> Iterator[str]:
     """Loss under each load case, of a list of percentages under the heaviest torque, at each friction coefficient."""
     rows = LOSSES.read(out)
     heaviest = max(row.torque_Nm for row in rows)
-    for row in (row for row in rows if row.friction and (row.torque_Nm == heaviest or row.case[-1] != "%")):
+    for row in (row for row in rows if row.friction and (row.torque_Nm == heaviest or row.is_named)):
         percent = plus_minus(row.loss_percent, row.loss_percent_error, 2)
         power = f"{plus_minus(row.loss_at_1000_rpm_W, row.loss_at_1000_rpm_W_error, 1)} W at {SPEED:g} r/min"
         if math.isfinite(row.speed_rpm):
@@ -234,7 +239,7 @@ def losses_figure(title: str, rows: Sequence[LossRow]) -> Figure:
         axes.set_ylabel(label)
     axes.legend(loc="best")
     said = ["Bars: estimated error, of mesh and spacing of positions."] * math.isfinite(most.loss_percent_error)
-    named = dict.fromkeys(f"{row.case} {row.torque_Nm:.4g} N·m" for row in rows if row.case[-1] != "%")
+    named = dict.fromkeys(f"{row.case} {row.torque_Nm:.4g} N·m" for row in rows if row.is_named)
     listed = [f"Loads: {', '.join(named)}."] if 0 < len(named) <= MOST_NAMED else []
     foot(figure, *said, *listed, "μ is the same at all speeds.")
     return figure

@@ -135,8 +135,8 @@ def test_refusals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_loss_of_the_best_ones_is_that_of_losses(tmp_path: Path) -> None:
-    """Of reliefs of 20 and 30 µm the second has the smaller loss. In line contact and resolved, with its error bar, it
-    is what `evolvent losses` of best.toml writes, within the numbers of both tables."""
+    """Problem: reliefs of 20 and 30 µm, of which the second has the smaller loss. In line contact and resolved,
+    with its error bar, it is what `evolvent losses` of best.toml writes, within the numbers of both tables."""
     loss = 'design.vary=[["both.tip_relief_um",20.0,30.0,10.0]]', 'design.targets=["loss_percent"]', "sweep.positions=8"
     bars = "contact.friction=0.1", "output.error_bars=true"
     variants = designed(tmp_path / "design", *loss, *bars)

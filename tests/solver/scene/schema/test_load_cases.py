@@ -47,7 +47,7 @@ def test_a_wrong_load_case_is_named_with_its_number(keys: str, words: str) -> No
 
 
 def test_names_are_different_folders() -> None:
-    """The same name, also in capitals, as some disks have one folder of both."""
+    """Problem: two load cases of one name, also in capitals, as some disks have one folder of both."""
     for second in ("start", "START"):
         (problem,) = said('name = "start", torque_Nm = 5.0', f'name = "{second}", torque_Nm = 6.0')
         assert problem.startswith(f'load_case[1].name: found "{second}", which load_case[0] is called, too')

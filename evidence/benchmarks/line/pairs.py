@@ -54,10 +54,11 @@ ALL = (
     case("He, short relief, plane", SPUR, (10.0, 50.0, 100.0), *relieved(40.0, "linear"),
          "pinion.tip_relief_start_diameter_mm=154.5", "wheel.tip_relief_start_diameter_mm=154.5", *FINE),
     case("He, lead crowning", SPUR, (60.0, 100.0), *relieved(20.0), "pinion.lead_crowning_um=5"),
+    case("He, misaligned 20 µm", SPUR, (30.0, 100.0), *relieved(20.0), "pair.misalignment_um=20"),
     case("tutorial, 24/72", ROOT / FIRST, (15.0, 50.0, 90.0), *relieved(40.0)),
     case("tutorial, linear relief", ROOT / FIRST, (15.0, 50.0, 90.0), *relieved(40.0, "linear")),
     case("Yang, relieved", HELICAL, (10.0, 30.0, 100.0), *relieved(60.0)),
-    case("Yang, misaligned 20 µm", HELICAL, (10.0, 30.0), *relieved(60.0), "pair.misalignment_um=20",
+    case("Yang, misaligned 20 µm", HELICAL, (10.0, 30.0, 100.0), *relieved(60.0), "pair.misalignment_um=20",
          "mesh.level=quick"),  # at standard it takes 19 GB
     case("23/81", ROOT / FIRST, (50.0, 100.0), *SLENDER, *relieved(20.0), "load.torque_Nm=100"),
 )

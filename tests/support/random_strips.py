@@ -44,7 +44,7 @@ def random_correction(random: np.random.Generator, rows: int, layers: int) -> Ra
     ]
     angle = np.repeat(random.normal(size=layers), PER_LAYER)
     nodes, angle = lattice(random, rows, 2 * layers + 1), np.append(angle, angle[-1])
-    correction = StripCorrection(nodes, PER_LAYER, angle, made)
+    correction = StripCorrection.of(nodes, PER_LAYER, angle, made)
     return RandomCorrection(correction, _written_out(correction, made))
 
 

@@ -40,6 +40,11 @@ class Material:
         number("density", self.density, "1e-15 to 1e-6 [t/mm³]", remedy, lambda ϱ: 1e-15 <= ϱ <= 1e-6)
 
     @property
+    def elasticity(self) -> tuple[float, float]:
+        """Young's modulus E [MPa] and Poisson's ratio ν: all that stiffness depends on."""
+        return self.youngs_modulus, self.poissons_ratio
+
+    @property
     def lame(self) -> tuple[float, float]:
         """Lamé parameters (λ, μ) [MPa], of 3D and of plane strain."""
         E, ν = self.youngs_modulus, self.poissons_ratio

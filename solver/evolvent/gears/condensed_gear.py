@@ -20,11 +20,12 @@ from evolvent.contact.nitsche.flux_recovery import (
     trace_functionals,
 )
 from evolvent.fem.body import Body, Fixed, assemble
-from evolvent.fem.condensation.schur_complement import SectorCondensation, SectorSystem
+from evolvent.fem.cache.cache import NOT_KEPT, Cache
+from evolvent.fem.condensation.schur_complement import SectorSystem
 from evolvent.fem.material import Material
 from evolvent.fem.parallel.cores import Threads
 from evolvent.fem.surface import Surface, surface_of
-from evolvent.gears.full_gear import WholeSystem, whole_mesh, whole_system
+from evolvent.gears.full_gear import whole_mesh, whole_system
 from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.meshing.root_meshes import root_nodes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Compliance
@@ -32,6 +33,7 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.mesh_digest import mesh_digest
 from evolvent_meshes.rotation import turn
 
 COUPLING_TOLERANCE = 1e-10
@@ -107,33 +109,46 @@ def condensed_gear(
     safety: float = SAFETY,
     whole: bool = False,
     threads: Threads = nullcontext,
+    cache: Cache = NOT_KEPT,
 ) -> GearBody:
     """Assembles and condenses one sector of a gear held at its bore, and closes the ring of its z sectors.
     Displacements of `root_nodes` are condensed, too, where the mesh has them.
 
     teeth: tooth pairs that may touch. safety: factor on the stabilisation of Nitsche's method. whole: assemble and
-    condense all sectors instead of one. threads: context in which the largest matrix products run.
+    condense all sectors instead of one. threads: context in which the largest matrix products run. cache: keeps a
+    sector that is closed to the ring.
 
     Raises NotPositiveDefinite, OutOfMemory.
     """
-    begin = time.perf_counter()
-    flank = surface_of(mesh, "flank")
-    traction = nitsche_traction(mesh, material, flank, safety) if carries_pressure else None
-    pitch, numbers = 2.0 * np.pi / gear.z, sorted(member.sign * tooth for tooth in teeth)
+    begin = assembled = time.perf_counter()
+    flank, pitch = surface_of(mesh, "flank"), 2.0 * np.pi / gear.z
+    numbers = sorted(member.sign * tooth for tooth in teeth)
+    own_safety = safety if carries_pressure else None
+    traction = None if own_safety is None else nitsche_traction(mesh, material, flank, own_safety)
+
+    def closed_sector() -> ChainedCompliance:
+        nonlocal assembled
+        system = _sector_system(sector_body(mesh, material, member), flank, traction, pitch)
+        assembled = time.perf_counter()
+        return ChainedCompliance.of(system.condensed(threads), settings)
+
     if whole:
         ring = whole_mesh(mesh, matching_cuts(mesh, pitch), gear.z)
-        named, own_safety = range(numbers[0], numbers[-1] + 1), safety if carries_pressure else None
-        system: WholeSystem | SectorSystem = whole_system(ring, material, gear.z, named, own_safety)
+        named = range(numbers[0], numbers[-1] + 1)
+        system = whole_system(ring, material, gear.z, named, own_safety)
+        assembled = time.perf_counter()
+        chain: Compliance = system.condensed(threads)
     else:
-        system = _sector_system(sector_body(mesh, material, member), flank, traction, pitch)
-    assembled = time.perf_counter()
-    condensed: SectorCondensation | Compliance = system.condensed(threads)
-    del system  # gigabytes at the fine end
-    if isinstance(condensed, SectorCondensation):
         settings = ChainSettings(pitch, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
-        condensed = ChainedCompliance(condensed, settings)
+        inputs = "sector", mesh_digest(mesh), material.elasticity, settings, own_safety
+        chain = cache.kept(f"sector, {in_words(gear)}", inputs, ChainedCompliance, closed_sector)
     end = time.perf_counter()
-    return GearBody(gear, mesh, material, flank, traction, condensed, member, assembled - begin, end - assembled)
+    return GearBody(gear, mesh, material, flank, traction, chain, member, assembled - begin, end - assembled)
+
+
+def in_words(gear: GearParameters) -> str:
+    """A gear in a few words, for lists of what is kept."""
+    return f"z = {gear.z}, m_n = {gear.normal_module:g} mm, β = {gear.helix_angle_deg:g}°, b = {gear.face_width:g} mm"
 
 
 def sector_body(mesh: MeshData, material: Material, member: Member) -> Body:

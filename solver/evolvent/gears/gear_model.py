@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 from mpi4py import MPI
 
+from evolvent.fem.cache.cache import Cache
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import shared, together
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
@@ -180,7 +181,7 @@ def _condensed(
     problem: GearProblem, meshes: Mapping[Member, SectorMesh], omitted: Mapping[Member, Collection[int]], comm: MPI.Comm
 ) -> dict[Member, dict[int, GearBody]]:
     """The gears whose meshes this rank has, by how many of the finest levels are omitted. Collective."""
-    cores = Cores(comm)
+    cores, cache = Cores(comm), Cache.of_environment()
     levelled = {member: each for member, each in meshes.items() if isinstance(each, LevelledMesh)}
     plain = {member: each for member, each in meshes.items() if not isinstance(each, LevelledMesh)}
 
@@ -188,12 +189,13 @@ def _condensed(
         return condensed_gear(
             problem.pair.gears[member], plain[member], problem.materials[member], problem.contact_teeth, member,
             member is Member.PINION and not problem.is_line, whole=problem.options.whole_gears, threads=cores.used,
+            cache=cache,
         )
 
     built = together(comm, lambda: {member: {0: condensed(member)} for member in plain}, cores.lent)
     if comm.allreduce(len(levelled)):
         counts = {m: sorted(len(each.levels) - number for number in omitted[m]) for m, each in levelled.items()}
-        for member, bodies in two_level_pair(problem, levelled, counts, comm, cores).items():
+        for member, bodies in two_level_pair(problem, levelled, counts, comm, cores, cache).items():
             built[member] = {max(bodies) - count: body for count, body in bodies.items()}
     return built
 

@@ -9,7 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evolvent.contact.nitsche.flux_recovery import SAFETY, nitsche_traction
+from evolvent.contact.nitsche.flux_recovery import SAFETY, NitscheTraction, nitsche_traction
+from evolvent.fem.cache.cache import NOT_KEPT, Cache
+from evolvent.fem.material import Material
 from evolvent.fem.parallel.cores import Threads
 from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
@@ -23,6 +25,7 @@ from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.mesh.mesh_digest import mesh_digest
 from evolvent_meshes.sector.flank_points import on_flank
 
 PatchName = tuple[int, Block]
@@ -74,13 +77,41 @@ class FlankPatches:
         response = self.levels[name[0]].response(self.named()[name])
         return TimedResponse(response, time.perf_counter() - begin)
 
-    def refined(self, responses: Mapping[PatchName, TimedResponse]) -> dict[int, list[RefinedLevel]]:
-        """The levels, for each of the counts. responses: of all patches."""
+    def condensed(self, material: Material, responses: Mapping[PatchName, TimedResponse]) -> CondensedFlanks:
+        """The flank with so many levels as each of the counts says. responses: of all patches."""
         by_level = [
             {block: each.response for (level, block), each in responses.items() if level == number}
             for number in range(len(self.levels))
         ]
-        return RefinedFlank(self.levels, by_level).levels(self.counts)
+        result: CondensedFlanks = {}
+        for count, levels in RefinedFlank(self.levels, by_level).levels(self.counts).items():
+            fine, safety = self.levels[count - 1].surface, self.flux_safety
+            traction = None if safety is None else nitsche_traction(fine.mesh, material, fine.surface, safety)
+            result[count] = CondensedFlank(fine.surface, traction, tuple(levels))
+        return result
+
+
+@dataclass(frozen=True)
+class CondensedFlank:
+    """A flank with some of its levels, condensed without the modifications of the gear."""
+
+    surface: Surface
+    """Finest of the levels."""
+    traction: NitscheTraction | None
+    """Recovered traction of Nitsche's method, of the pinion; else None."""
+    levels: tuple[RefinedLevel, ...]
+    """Levels from the coarsest to the finest."""
+
+
+CondensedFlanks = dict[int, CondensedFlank]
+"""Flanks of a gear by their numbers of levels."""
+
+
+def flank_inputs(problem: GearProblem, member: Member, sector: LevelledMesh, counts: Sequence[int]) -> object:
+    """All that the `CondensedFlanks` of a gear depend on."""
+    plain, material = unmodified(problem.pair.gears[member]), problem.materials[member]
+    safety = SAFETY if member is Member.PINION else None
+    return "levels", plain, mesh_digest(sector.mesh), material.elasticity, sector.levels, tuple(counts), safety
 
 
 def two_level_gear(
@@ -93,37 +124,34 @@ def two_level_gear(
     """
     count = len(sector.levels)
     coarse = coarse_gear(problem, member, sector, threads)
-    flank = FlankPatches.of(problem, member, sector, [count], safety)
-    responses = {name: flank.response(name) for name in flank.named()}
-    return corrected_gears(problem, coarse, sector, flank, responses)[count]
+    patches = FlankPatches.of(problem, member, sector, [count], safety)
+    flanks = patches.condensed(coarse.material, {name: patches.response(name) for name in patches.named()})
+    return corrected_gears(problem, coarse, sector, flanks)[count]
 
 
-def coarse_gear(problem: GearProblem, member: Member, sector: LevelledMesh, threads: Threads) -> GearBody:
+def coarse_gear(
+    problem: GearProblem, member: Member, sector: LevelledMesh, threads: Threads, cache: Cache = NOT_KEPT
+) -> GearBody:
     """The coarse sector, condensed and closed to the ring. Raises NotPositiveDefinite, OutOfMemory."""
     gear, material = unmodified(problem.pair.gears[member]), problem.materials[member]
-    return condensed_gear(gear, sector.mesh, material, problem.contact_teeth, member, False, threads=threads)
+    teeth = problem.contact_teeth
+    return condensed_gear(gear, sector.mesh, material, teeth, member, False, threads=threads, cache=cache)
 
 
 def corrected_gears(
-    problem: GearProblem, coarse: GearBody, sector: LevelledMesh, flank: FlankPatches,
-    responses: Mapping[PatchName, TimedResponse],
+    problem: GearProblem, coarse: GearBody, sector: LevelledMesh, flanks: CondensedFlanks, seconds: float = 0.0
 ) -> dict[int, GearBody]:
-    """The gear with so many levels of its flank as each count of `flank` says. responses: of all patches."""
-    begin, refined = time.perf_counter(), flank.refined(responses)
-    pitch, safety = 2.0 * np.pi / coarse.gear.z, flank.flux_safety
-    gear = problem.pair.gears[coarse.member]
+    """The gear with each of the flanks, by their numbers of levels. seconds: wall time of condensing the flanks [s]."""
+    pitch, gear = 2.0 * np.pi / coarse.gear.z, problem.pair.gears[coarse.member]
     assert isinstance(coarse.chain, ChainedCompliance)
-    bodies = {}
-    for count, levels in refined.items():
-        fine = flank.levels[count - 1].surface
-        traction = None if safety is None else nitsche_traction(fine.mesh, coarse.material, fine.surface, safety)
-        ring = TwoLevelRing(coarse.chain, coarse.flank, levels, pitch)
-        bodies[count] = replace(
-            coarse, gear=gear, flank=modified_flank(fine.surface, gear), traction=traction, chain=ring,
-            levels=sector.levels[:count],
+    return {
+        count: replace(
+            coarse, gear=gear, flank=modified_flank(flank.surface, gear), traction=flank.traction,
+            chain=TwoLevelRing(coarse.chain, coarse.flank, flank.levels, pitch), levels=sector.levels[:count],
+            condense_seconds=coarse.condense_seconds + seconds,
         )
-    seconds = coarse.condense_seconds + sum(each.seconds for each in responses.values()) + time.perf_counter() - begin
-    return {count: replace(body, condense_seconds=seconds) for count, body in bodies.items()}
+        for count, flank in flanks.items()
+    }
 
 
 def levelled_flank(problem: GearProblem, member: Member, sector: LevelledMesh) -> Surface:

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -34,7 +35,7 @@ import scipy.sparse as sp
 from evolvent.contact.newton.applied_compliance import SurfaceCompliance
 from evolvent.fem.condensation.schur_complement import SectorCondensation
 from evolvent.gears.ring.jump_map import JumpMap
-from evolvent.gears.ring.ring_modes import coupling
+from evolvent.gears.ring.ring_modes import Coupling, coupling
 from evolvent.gears.ring.ring_window import RingWindow
 from evolvent.gears.ring.sector_interfaces import ClosedRing
 from evolvent_meshes.arrays import Floats, Ints
@@ -123,26 +124,46 @@ class ChainSettings:
             )
 
 
+@dataclass(frozen=True, eq=False)
 class ChainedCompliance:
     """Compliance of a gear of equal sectors: one sector's C, which all share, and the coupling through interfaces."""
 
-    def __init__(self, sector: SectorCondensation, settings: ChainSettings) -> None:
-        self.dimension = settings.dimension
-        self.node_count = _node_count(sector.compliance, settings.dimension)
-        self.teeth = range(settings.first, settings.first + settings.count)
-        self._pitch = settings.pitch
-        self._settings = settings
-        self._sector = sector
-        self._frames = _frames_of_faces(len(sector.stiffness), settings)
-        self._coupling = coupling(sector, self._frames, self._joined, settings.tolerance)
-        self._modes = self._coupling.modes
+    sector: SectorCondensation
+    """One sector, in its own frame."""
+    coupling: Coupling
+    """Coupling of the teeth through the cut faces of all sectors."""
+    settings: ChainSettings
+    """Teeth that rows may name."""
+
+    @staticmethod
+    def of(sector: SectorCondensation, settings: ChainSettings) -> ChainedCompliance:
+        """Closes a sector to the ring. Raises ValueError where the compliance has no whole nodes."""
+        _require_nodes(sector.compliance, settings.dimension)
+        frames = _frames_of_faces(len(sector.stiffness), settings)
+        joined = partial(_joined, settings=settings)
+        return ChainedCompliance(sector, coupling(sector, frames, joined, settings.tolerance), settings)
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of space, d."""
+        return self.settings.dimension
+
+    @property
+    def node_count(self) -> int:
+        """Number of nodes of a tooth's flank."""
+        return len(self.sector.compliance) // self.dimension
+
+    @property
+    def teeth(self) -> range:
+        """Numbers of the teeth that rows may name."""
+        return range(self.settings.first, self.settings.first + self.settings.count)
 
     def jumps(self, parts: Sequence[MappedNodes]) -> Floats:
         """Compliance E C Eᵀ of the parts' maps E as a matrix, in their order (mm/N where E = 1). The maps are applied
         to the few modes of the coupling, and to the whole compliance of their own tooth only."""
         self._check([(part.tooth, node) for part in parts for node in part.nodes])
         parts = [part.of_turned(self._turn(part.tooth)) if part.tooth else part for part in parts]
-        modes = [part.jumps(self._modes[_dofs(part.nodes, self.dimension)]) for part in parts]
+        modes = [part.jumps(self.coupling.modes[_dofs(part.nodes, self.dimension)]) for part in parts]
         ends = np.cumsum([0] + [len(mode) for mode in modes])
         result = np.empty((ends[-1], ends[-1]))
         for i, (part, mode) in enumerate(zip(parts, modes)):
@@ -161,11 +182,10 @@ class ChainedCompliance:
         dofs, d = _dofs(nodes, self.dimension), self.dimension
         right = np.empty((len(dofs), len(nodes)))
         for j, (node, axis) in enumerate(zip(nodes, along)):
-            right[:, j] = self._sector.compliance[d * node : d * node + d].T[dofs] @ axis  # C is symmetric
+            right[:, j] = self.sector.compliance[d * node : d * node + d].T[dofs] @ axis  # C is symmetric
         own = np.einsum("iaj,ia->ij", right.reshape(len(nodes), d, -1), axes)
-        modes, force_modes = (
-            np.einsum("iar,ia->ir", self._modes[dofs].reshape(len(nodes), d, -1), each) for each in (axes, along)
-        )
+        here = self.coupling.modes[dofs].reshape(len(nodes), d, -1)
+        modes, force_modes = (np.einsum("iar,ia->ir", here, each) for each in (axes, along))
         return DirectedCompliance(own, modes, force_modes, self._between)
 
     def window(self, parts: Sequence[tuple[int, Ints]]) -> RingWindow:
@@ -175,7 +195,7 @@ class ChainedCompliance:
         teeth = [tooth for tooth, _ in parts]
         coupling = np.block([[self._between(tooth, other) for other in teeth] for tooth in teeth])
         own = tuple(self._own(nodes) for _, nodes in parts)
-        return RingWindow(own, tuple(self._modes[each] for each in dofs), coupling)
+        return RingWindow(own, tuple(self.coupling.modes[each] for each in dofs), coupling)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
         """Displacements (..., k_out, d) [mm] of `rows_out` (k_out, 2) under `forces` (..., k_in, d) [N] on `rows_in`. A
@@ -185,28 +205,29 @@ class ChainedCompliance:
         for tooth, (places, nodes) in self._groups(rows_out).items():
             dofs = _dofs(nodes, self.dimension)
             modes = sum(amplitude @ self._between(other, tooth) for other, (_, _, amplitude) in loaded.items())
-            local = modes @ self._modes[dofs].T
+            local = modes @ self.coupling.modes[dofs].T
             if tooth in loaded:
                 sources, values, _ = loaded[tooth]
-                local += values @ self._sector.compliance[np.ix_(sources, dofs)]  # C is symmetric
+                local += values @ self.sector.compliance[np.ix_(sources, dofs)]  # C is symmetric
             result[..., places, :] = local.reshape(*local.shape[:-1], -1, self.dimension) @ self._turn(tooth).T
         return result
 
     def cut_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
         """Displacements (2c: low, high face; sector's own frame; mm) of each tooth's cut faces under `forces`
         (k_in, d; N), or (n, 2c) under (n, k_in, d), for `SectorRecovery`. Exact, whatever the tolerance."""
+        frames = _frames_of_faces(len(self.sector.stiffness), self.settings)
         sources = {
-            self._place(tooth): self._frames.T @ (values @ self._sector.transfer[dofs]).T
+            self._place(tooth): frames.T @ (values @ self.sector.transfer[dofs]).T
             for tooth, (dofs, values, _) in self._loads(rows_in, forces).items()
         }
-        low_faces = self._joined(self._frames.T @ self._sector.stiffness @ self._frames).displacements(sources)
+        low_faces = _joined(frames.T @ self.sector.stiffness @ frames, self.settings).displacements(sources)
         # the ring has more sectors than the named teeth
-        return {tooth: (self._frames @ np.concatenate(low_faces[i : i + 2])).T for i, tooth in enumerate(self.teeth)}
+        return {tooth: (frames @ np.concatenate(low_faces[i : i + 2])).T for i, tooth in enumerate(self.teeth)}
 
     def observed_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
         """Displacements (n, k, d; sector's own frame; mm) of the k observed nodes of each tooth under `forces`
         (n, k_in, d; N). Exact, whatever the tolerance. Raises ValueError where none were condensed."""
-        response = self._sector.observed
+        response = self.sector.observed
         if response is None:
             raise ValueError("ring of sectors: wanted observed nodes, found none; condense them with the flank")
         loaded = self._loads(rows_in, forces)
@@ -219,9 +240,6 @@ class ChainedCompliance:
             result[tooth] = moved.reshape(len(forces), -1, self.dimension)
         return result
 
-    def _joined(self, stiffness: Floats) -> ClosedRing:
-        return ClosedRing(stiffness, round(2 * np.pi / self._settings.pitch), self._settings.count)
-
     def _loads(self, rows: Ints, forces: Floats) -> dict[int, tuple[Ints, Floats, Floats]]:
         """Tooth -> dofs, forces in the sector's frame, amplitudes of the modes."""
         loaded = {}
@@ -229,7 +247,7 @@ class ChainedCompliance:
             dofs = _dofs(nodes, self.dimension)
             values = forces[..., places, :] @ self._turn(tooth)
             values = values.reshape(*values.shape[:-2], -1)
-            loaded[tooth] = (dofs, values, values @ self._modes[dofs])
+            loaded[tooth] = (dofs, values, values @ self.coupling.modes[dofs])
         return loaded
 
     def _groups(self, rows: Ints) -> dict[int, tuple[Ints, Ints]]:
@@ -253,15 +271,15 @@ class ChainedCompliance:
         return tooth - self.teeth.start
 
     def _between(self, tooth: int, other: int) -> Floats:
-        return self._coupling.between(self._place(tooth), self._place(other))
+        return self.coupling.between(self._place(tooth), self._place(other))
 
     def _turn(self, tooth: int) -> Floats:
-        return turn(tooth * self._pitch, self.dimension)
+        return turn(tooth * self.settings.pitch, self.dimension)
 
     def _own(self, nodes: Ints) -> Floats:
         """Compliance of the sector between some nodes, in its own frame."""
         dofs = _dofs(nodes, self.dimension)
-        return self._sector.compliance[np.ix_(dofs, dofs)]
+        return self.sector.compliance[np.ix_(dofs, dofs)]
 
 
 def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
@@ -272,14 +290,18 @@ def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
     return sp.csr_array(sp.block_diag([low, high]))
 
 
+def _joined(stiffness: Floats, settings: ChainSettings) -> ClosedRing:
+    """The ring of sectors whose faces have this stiffness (2c × 2c)."""
+    return ClosedRing(stiffness, round(2 * np.pi / settings.pitch), settings.count)
+
+
 def _dofs(nodes: Ints, dimension: int) -> Ints:
     return (nodes[:, None] * dimension + np.arange(dimension)).ravel()
 
 
-def _node_count(compliance: Floats, dimension: int) -> int:
+def _require_nodes(compliance: Floats, dimension: int) -> None:
     if compliance.shape[0] != compliance.shape[1] or len(compliance) % dimension:
         raise ValueError(
             f"sector: wanted a square compliance with {dimension} rows a node, found shape {compliance.shape}; "
             "give the functionals node by node"
         )
-    return len(compliance) // dimension

@@ -189,7 +189,7 @@ class LevelPatches:
         for layer in face.sampled:
             rows = self._along_profile(range(layer, layer + 1), responses)
             strips += [self._strip(response, row, face.between) for row, response in rows]
-        return StripCorrection(self._fine, int(self._nodes[1]), self._angle, strips)
+        return StripCorrection.of(self._fine, int(self._nodes[1]), self._angle, strips)
 
     def _along_profile(self, layers: range, responses: Mapping[Block, Response]) -> Iterator[tuple[int, Response]]:
         """The responses to loads on each row of coarse cells in some layers."""

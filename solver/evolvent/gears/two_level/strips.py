@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -19,22 +20,31 @@ from evolvent.gears.two_level.symmetric_strips import Strip, symmetric_strips
 from evolvent_meshes.arrays import Bools, Floats, Ints, Reals
 
 
+@dataclass(frozen=True, eq=False)
 class StripCorrection:
-    """Correction S of the compliance between a flank's n nodes, in the frame of tooth 0.
+    """Correction S of the compliance between a flank's n nodes, in the frame of tooth 0."""
 
-    lattice: of the nodes.
-    per_layer: levels of nodes in a coarse layer.
-    angle: (levels,) by which the frames of the layers are turned [rad].
-    strips: of S, from `responses`, those of D.
-    """
+    lattice: FlankLattice
+    """Lattice of the nodes."""
+    per_layer: int
+    """Levels of nodes in a coarse layer."""
+    angle: Floats
+    """Rotation (levels,) of the frames of the layers [rad]."""
+    strips: tuple[Strip, ...]
+    """Strips of S."""
 
-    def __init__(self, lattice: FlankLattice, per_layer: int, angle: Floats, responses: Sequence[Strip]) -> None:
+    @staticmethod
+    def of(lattice: FlankLattice, per_layer: int, angle: Floats, responses: Sequence[Strip]) -> StripCorrection:
+        """The correction from the strips `responses` of D. Raises ValueError where they do not have each node once."""
         held = sum(each.layers * each.sources[0] * each.sources[1] for each in responses)
         if held != lattice.nodes.size:
             raise ValueError(f"patches: wanted sources with each node once, {lattice.nodes.size}, found {held}")
-        self.lattice, self.per_layer, self.angle = lattice, per_layer, angle
-        self.strips = tuple(symmetric_strips(responses, per_layer))
-        self.numbers = np.ascontiguousarray(lattice.nodes.T)  # (levels, rows)
+        return StripCorrection(lattice, per_layer, angle, tuple(symmetric_strips(responses, per_layer)))
+
+    @cached_property
+    def numbers(self) -> Ints:
+        """Numbers (levels, rows) of the nodes."""
+        return np.ascontiguousarray(self.lattice.nodes.T)
 
     @property
     def size(self) -> int:

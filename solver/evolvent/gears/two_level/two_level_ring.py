@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -17,19 +18,18 @@ from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.rotation import turn
 
 
+@dataclass(frozen=True, eq=False)
 class TwoLevelRing:
-    """Compliance of the nodes of all flanks on the finest level.
+    """Compliance of the nodes of all flanks on the finest level."""
 
-    coarse: compliance of the ring of coarse sectors.
-    flank: of the coarse sector.
-    levels: from the coarsest to the finest.
-    pitch: angle between teeth [rad].
-    """
-
-    def __init__(
-        self, coarse: ChainedCompliance, flank: Surface, levels: Sequence[RefinedLevel], pitch: float
-    ) -> None:
-        self.coarse, self.flank, self.levels, self.pitch = coarse, flank, tuple(levels), pitch
+    coarse: ChainedCompliance
+    """Compliance of the ring of coarse sectors."""
+    flank: Surface
+    """Flank of the coarse sector."""
+    levels: tuple[RefinedLevel, ...]
+    """Levels from the coarsest to the finest."""
+    pitch: float
+    """Angle between teeth [rad]."""
 
     def jumps(self, parts: Sequence[MappedNodes]) -> FlankWindow:
         """Compliance E C Eᵀ of the parts' maps E between nodes of the finest level, applied to forces without a

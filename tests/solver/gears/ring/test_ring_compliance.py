@@ -62,7 +62,7 @@ def merged(shape: str) -> tuple[Ring, Floats]:
 
 def chained(shape: str) -> ChainedCompliance:
     sector = sector_of(shape)
-    return ChainedCompliance(sector, ChainSettings(PITCH, TEETH, FIRST, dimension=len(SHAPES[shape])))
+    return ChainedCompliance.of(sector, ChainSettings(PITCH, TEETH, FIRST, dimension=len(SHAPES[shape])))
 
 
 def all_rows(body: ChainedCompliance) -> Ints:
@@ -156,7 +156,9 @@ def test_closed_ring_equals_merged_ring(shape: str, sectors: int) -> None:
     pitch = 2 * np.pi / sectors
     model = ring(SHAPES[shape], sectors, pitch, -2, closed=True)
     exact = compliance(model.stiffness, picker(np.concatenate(model.surface), model.stiffness.shape[0]), model.free)
-    gear = ChainedCompliance(sector_of(shape, pitch), ChainSettings(pitch, sectors, -2, dimension=len(SHAPES[shape])))
+    gear = ChainedCompliance.of(
+        sector_of(shape, pitch), ChainSettings(pitch, sectors, -2, dimension=len(SHAPES[shape]))
+    )
     assert np.abs(gear.jumps(parts(all_rows(gear))) - exact).max() < 1e-12 * np.abs(exact).max()
 
 
@@ -166,7 +168,7 @@ def test_cut_faces_of_a_closed_ring_equal_the_merged_ring(sectors: int) -> None:
     pitch, first = 2 * np.pi / sectors, -2
     radial, angular = SHAPES["2D"]
     model = ring((radial, angular), sectors, pitch, first, closed=True)
-    gear = ChainedCompliance(sector_of("2D", pitch), ChainSettings(pitch, sectors, first, dimension=2))
+    gear = ChainedCompliance.of(sector_of("2D", pitch), ChainSettings(pitch, sectors, first, dimension=2))
     rows, forces = np.array([(-2, 1), (1, 3)]), np.array([[1.0, -2.0], [0.5, 3.0]])
     load = np.zeros(model.stiffness.shape[0])
     for (tooth, node), force in zip(rows, forces, strict=True):
@@ -195,8 +197,8 @@ def test_naming_fewer_teeth_of_a_ring_changes_nothing() -> None:
     """Naming three of the seven teeth gives the same compliance as naming all: the others are still there."""
     pitch = 2 * np.pi / 7
     sector = sector_of("2D", pitch)
-    whole = ChainedCompliance(sector, ChainSettings(pitch, 7, -3, dimension=2))
-    window = ChainedCompliance(sector, ChainSettings(pitch, 3, -1, dimension=2))
+    whole = ChainedCompliance.of(sector, ChainSettings(pitch, 7, -3, dimension=2))
+    window = ChainedCompliance.of(sector, ChainSettings(pitch, 3, -1, dimension=2))
     rows = all_rows(window)
     wanted = whole.jumps(parts(rows))
     assert np.abs(window.jumps(parts(rows)) - wanted).max() < 1e-14 * np.abs(wanted).max()

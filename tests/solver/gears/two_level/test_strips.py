@@ -45,4 +45,4 @@ def test_sources_that_leave_nodes_out_are_refused(correction: RandomCorrection) 
     """Nodes of no patch would have no displacement."""
     strips = correction.strips
     with pytest.raises(ValueError, match="each node once"):
-        StripCorrection(strips.lattice, strips.per_layer, strips.angle, strips.strips[1:])
+        StripCorrection.of(strips.lattice, strips.per_layer, strips.angle, strips.strips[1:])

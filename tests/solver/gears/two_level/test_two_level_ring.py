@@ -73,7 +73,7 @@ def two_levels() -> tuple[TwoLevelRing, Floats]:
     Q = sp.block_diag([np.kron(np.eye(levels[-1].correction.size), turn(i * PITCH)) for i in range(TEETH)]).toarray()
     flank: Any = SimpleNamespace(points=random.normal(size=(COARSE, 3)), normals=random.normal(size=(COARSE, 3)))
     coarse: Any = RandomRing(matrix)
-    return TwoLevelRing(coarse, flank, levels, PITCH), Q @ C @ Q.T
+    return TwoLevelRing(coarse, flank, tuple(levels), PITCH), Q @ C @ Q.T
 
 
 @pytest.mark.parametrize("loads", [(), (2,)])

@@ -1,0 +1,1 @@
+"""Values that are expensive to compute, kept in files between calls: the cache."""

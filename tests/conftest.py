@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -16,6 +17,14 @@ def _quiet() -> None:
     )
 
     dolfinx_compat.silence_logs()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _nothing_kept() -> Iterator[None]:
+    """Each test condenses what it asks for, whatever this user's cache holds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("EVOLVENT_CACHE_GB", "0")
+        yield
 
 
 @pytest.fixture(autouse=True)

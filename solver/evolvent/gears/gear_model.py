@@ -14,10 +14,11 @@ from mpi4py import MPI
 from evolvent.fem.cache.cache import Cache
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import shared, together
-from evolvent.gears.condensed_gear import GearBody, condensed_gear
+from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.gear_load import GearLoad, gear_load
+from evolvent.gears.meshed_sector import MeshedSector, Mesher
 from evolvent.gears.meshing.flank_levels import levelled_sector
-from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, is_two_level, run_mesh
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh, is_two_level, run_mesh
 from evolvent.gears.position_start import PositionStart
 from evolvent.gears.problem.flank_deviations import FlankCharts
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -25,8 +26,6 @@ from evolvent.gears.two_level_pair import two_level_pair
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
-Mesher = Callable[[GearProblem, Member], SectorMesh]
-"""Function that makes the sector mesh of the pinion or the wheel; with levels, the gear is condensed in levels."""
 Preparer = Callable[..., "Preparation"]
 """A function with the parameters of `prepare_model`."""
 PositionStarts = Callable[["GearModel", float], PositionStart | None]
@@ -159,7 +158,7 @@ def condensed_gears(
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]
     finest = min(problems, key=lambda problem: problem.torque)
-    meshes = together(comm, lambda: {member: mesh(finest, member) for member in own})
+    meshes = together(comm, lambda: {member: MeshedSector.of(finest, member, mesh) for member in own})
     after_meshing = time.perf_counter()
     meshed()
     omitted = {member: {_omitted(problem, finest, member) for problem in problems} for member in Member}
@@ -178,19 +177,16 @@ def _omitted(problem: GearProblem, finest: GearProblem, member: Member) -> int:
 
 
 def _condensed(
-    problem: GearProblem, meshes: Mapping[Member, SectorMesh], omitted: Mapping[Member, Collection[int]], comm: MPI.Comm
+    problem: GearProblem, sectors: Mapping[Member, MeshedSector], omitted: Mapping[Member, Collection[int]],
+    comm: MPI.Comm,
 ) -> dict[Member, dict[int, GearBody]]:
     """The gears whose meshes this rank has, by how many of the finest levels are omitted. Collective."""
     cores, cache = Cores(comm), Cache.of_environment()
-    levelled = {member: each for member, each in meshes.items() if isinstance(each, LevelledMesh)}
-    plain = {member: each for member, each in meshes.items() if not isinstance(each, LevelledMesh)}
+    levelled = {m: each.mesh for m, each in sectors.items() if isinstance(each.mesh, LevelledMesh)}
+    plain = {m: each for m, each in sectors.items() if m not in levelled}
 
     def condensed(member: Member) -> GearBody:
-        return condensed_gear(
-            problem.pair.gears[member], plain[member], problem.materials[member], problem.contact_teeth, member,
-            member is Member.PINION and not problem.is_line, whole=problem.options.whole_gears, threads=cores.used,
-            cache=cache,
-        )
+        return plain[member].condensed(problem, member, cores.used, cache)
 
     built = together(comm, lambda: {member: {0: condensed(member)} for member in plain}, cores.lent)
     if comm.allreduce(len(levelled)):

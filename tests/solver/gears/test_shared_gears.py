@@ -9,7 +9,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
-from evolvent.gears import gear_model
+from evolvent.gears import meshed_sector
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.meshing.flank_levels import FlankLevel, LevelledSector, levelled_sector
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, levelled_mesh
@@ -70,13 +70,13 @@ def test_each_torque_has_the_gears_that_it_would_have_alone() -> None:
 
 def test_gears_of_one_mesh_are_condensed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where flanks have no levels, all torques share the mesh of the lightest: both gears are condensed once."""
-    calls, condensed = [], gear_model.condensed_gear
+    calls, condensed = [], meshed_sector.condensed_gear
 
     def counted(*given: object, **named: object) -> object:
         calls.append(given)
         return condensed(*given, **named)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(gear_model, "condensed_gear", counted)
+    monkeypatch.setattr(meshed_sector, "condensed_gear", counted)
     three = under_torques(gear_problem(spur_scene("mesh.level=quick")), [5e3, 10e3, 20e3])
     gears = SharedGears(three)
     models = [gears.prepare(each, MPI.COMM_SELF).model for each in three]
@@ -97,7 +97,7 @@ def test_torque_beyond_those_that_the_meshes_serve_is_refused() -> None:
 def test_gears_in_line_contact_serve_all_modifications(monkeypatch: pytest.MonkeyPatch) -> None:
     """Problem: He's pair in line contact with two reliefs and torques. Exact: one name, gears condensed once, and the
     mesh that each would have alone, 1e-9. Where the contact is resolved they have gears of their own."""
-    calls, condensed = [], gear_model.condensed_gear
+    calls, condensed = [], meshed_sector.condensed_gear
 
     def counted(*given: object, **named: object) -> object:
         calls.append(given)
@@ -112,7 +112,7 @@ def test_gears_in_line_contact_serve_all_modifications(monkeypatch: pytest.Monke
     assert len({shared_gears_name(each) for each in resolved}) == 2
     angles = 2.0 * np.pi / 50.0 * np.arange(3) / 3
     alone = [loaded_mesh(prepare_model(each, MPI.COMM_SELF).model, [each.torque], angles) for each in relieved]
-    monkeypatch.setattr(gear_model, "condensed_gear", counted)
+    monkeypatch.setattr(meshed_sector, "condensed_gear", counted)
     gears = SharedGears(relieved)
     for problem, wanted in zip(relieved, alone):
         found = loaded_mesh(gears.prepare(problem, MPI.COMM_SELF).model, [problem.torque], angles)

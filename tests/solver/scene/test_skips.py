@@ -15,7 +15,7 @@ import pytest
 from evidence.benchmarks.gears.skips import CASES, differences
 from evolvent.check.check_report import overview
 from evolvent.commands.app import main
-from evolvent.gears import gear_model
+from evolvent.gears import meshed_sector
 from evolvent.gears.full_gear import WholeGear
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
@@ -184,8 +184,8 @@ def test_the_body_is_refined() -> None:
 def test_gears_are_condensed_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Without reuse both gears are condensed for each of two friction coefficients."""
     made: list[int] = []
-    counted = calling_first(gear_model.condensed_gear, lambda *_, **__: made.append(1))
-    monkeypatch.setattr(gear_model, "condensed_gear", counted)
+    counted = calling_first(meshed_sector.condensed_gear, lambda *_, **__: made.append(1))
+    monkeypatch.setattr(meshed_sector, "condensed_gear", counted)
     counts = []
     for off in (False, True):
         made.clear()

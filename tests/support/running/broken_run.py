@@ -36,7 +36,7 @@ from mpi4py import MPI
 
 from evolvent.commands.app import main
 from evolvent.contact.newton.contact_equations import CondensedSystem
-from evolvent.gears import gear_model
+from evolvent.gears import meshed_sector
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.meshing import levelled_meshes
 from evolvent.gears.solution import certificates
@@ -158,7 +158,7 @@ if __name__ == "__main__":
     condensed: list[int] = []
     searched: list[int] = []
     if how == "count":
-        before_call(gear_model, "condensed_gear", condensed.append)
+        before_call(meshed_sector, "condensed_gear", condensed.append)
         for module in (pitch_sweep, parallel_sweep):
             before_call(module, "shared_position", searched.append)
     break_it(how)

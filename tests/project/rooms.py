@@ -21,6 +21,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "fem.backend": ("meshes", "meshes.mesh"),
     "fem": ("meshes", "meshes.mesh", "fem.parallel", "fem.backend"),
     "fem.condensation": ("meshes", "fem.parallel", "fem.backend"),
+    "fem.cache": ("meshes", "fem.backend"),
     "contact": ("meshes",),
     "contact.search": ("meshes", "fem"),
     "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
@@ -46,7 +47,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "gears": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "fem.condensation",
-        "contact.nitsche", "gears.problem", "gears.meshing", "gears.ring", "gears.two_level",
+        "fem.cache", "contact.nitsche", "gears.problem", "gears.meshing", "gears.ring", "gears.two_level",
     ),
     "gears.contact": (
         "meshes", "meshes.gears", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton",
@@ -200,8 +201,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "run.study.results", "run.study.figures", "dynamics",
     ),
     "commands": (
-        "meshes", "meshes.mesh", "fem.backend", "fem.parallel", "gears.meshing", "scene.*", "results.tables",
-        "results.drawing", "wear", "run.*", "check",
+        "meshes", "meshes.mesh", "fem.backend", "fem.parallel", "fem.cache", "gears.meshing", "scene.*",
+        "results.tables", "results.drawing", "wear", "run.*", "check",
     ),
     "evolvent": ("commands",),
 }

@@ -14,9 +14,11 @@ import typer
 from evolvent.commands.command import Command
 from evolvent.commands.exit import STATUSES, reported
 from evolvent.commands.options import (
+    CacheSize,
     ExactParts,
     Force,
     LevelOption,
+    NoCache,
     Overrides,
     Overwrite,
     Percents,
@@ -27,6 +29,7 @@ from evolvent.commands.options import (
     SceneFile,
     results_folder,
     torque_list,
+    use_cache,
 )
 from evolvent.commands.scene_argument import loaded_scene, require, require_room
 from evolvent.fem.parallel.mpi_start import world
@@ -57,11 +60,14 @@ def _command(kind: Kind) -> Command:
         resume: Resume = False,
         overwrite: Overwrite = False,
         quiet: Quiet = False,
+        no_cache: NoCache = False,
+        cache_size: CacheSize = None,
         petsc: PetscOptions = None,
     ) -> None:
         with reported(parallel=True, advice=f"; `evolvent {kind.name} ... --resume` continues"):
             loaded = loaded_scene(scene, level, settings, exact, world())
             require(not (resume and overwrite), BOTH)
+            use_cache(no_cache, cache_size)
             if petsc is not None:
                 os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
             computation = kind_of(kind.name, loaded).load()

@@ -1,9 +1,10 @@
-"""Commands that look at a scene, at a finished run or at records: `check`, `mesh`, `plot`, `wear-coefficient`, `info`.
-Rank 0 alone does them."""
+"""Commands that look at a scene, at a finished run, at records or at what is kept: `check`, `mesh`, `plot`,
+`wear-coefficient`, `cache`, `info`. Rank 0 alone does them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,9 @@ from evolvent.scene.line_level import require_resolved
 from evolvent_meshes.files import require_writable, write_bytes
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
+
+
+LIST, CLEAR = "list", "clear"
 
 
 def _require_new(out: Path, suffix: str, overwrite: bool) -> None:
@@ -148,6 +152,26 @@ def wear_coefficient(
             warn(["the interval reaches below 0, which no K/H can: give more records"])
 
 
+def cache(
+    what: Annotated[str, typer.Argument(metavar="list|clear", help="Show what is kept, or remove all of it.")],
+) -> None:
+    """List or clear the condensed gears that are kept between calls."""
+    with reported():
+        require(what in (LIST, CLEAR), f"cache: found {what!r}; allowed: list, clear; remedy: evolvent cache list")
+        from evolvent.fem.cache.cache import Cache
+
+        kept = Cache()
+        if what == CLEAR:
+            typer.echo(f"{kept.clear() / 1e6:.0f} MB removed from {kept.folder}")
+            return
+        entries = kept.entries()
+        for each in entries:
+            used = datetime.fromtimestamp(each.used).isoformat(" ", "minutes")
+            typer.echo(f"{each.size / 1e6:8.1f} MB  {used}  {each.about}")
+        total = sum(each.size for each in entries)
+        typer.echo(f"{total / 1e6:8.1f} MB of at most {kept.bound / 1e6:.0f} MB in {kept.folder}")
+
+
 def info() -> None:
     """Print the versions of what a result depends on."""
     with reported():
@@ -165,6 +189,7 @@ LOOKING = (
     _looking("mesh", mesh, "demos/yang2022.toml --out pair.msh --level quick"),
     _looking("plot", plot, "out/yang2022"),
     _looking("wear-coefficient", wear_coefficient, "record.csv --force-N 500 --pin-diameter-mm 6 --run-in-m 500"),
+    _looking("cache", cache, "list"),
     _looking("info", info, ""),
 )
 """The commands of this file, in the order of the help."""

@@ -18,6 +18,10 @@ from evolvent.scene.schema.output import SKIP_NAMES
 
 MOST_DIGITS, MOST_SHOWN = 9, 40
 """Largest number of digits of a number of worker processes, and of characters of an invalid one in a message."""
+MOST_GIGABYTES = 1e6
+"""Size of a cache that no disk has."""
+CACHE_SIZE = "EVOLVENT_CACHE_GB"
+"""Environment variable that evolvent.fem.cache.cache reads."""
 MOST_PERCENT = 1000.0
 """Largest part of a scene's torque in a load list."""
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
@@ -198,6 +202,30 @@ Resume = Annotated[
 Overwrite = Annotated[
     bool, typer.Option("--overwrite", help="Remove an earlier run from DIR, once the gears are condensed.")
 ]
+
+
+def given_gigabytes(text: str) -> float:
+    """A size of the cache from the command line [GB]. Raises typer.BadParameter."""
+    size = given_number(text)
+    if not 0.0 <= size < MOST_GIGABYTES:
+        allowed = f"a number from 0 to {MOST_GIGABYTES:g}"
+        raise typer.BadParameter(f"--cache-size: found {text}; allowed: {allowed}; remedy: write --cache-size 20")
+    return size
+
+
+NoCache = Annotated[bool, typer.Option("--no-cache", help="Condense the gears anew, and do not keep them.")]
+CacheSize = Annotated[
+    Any,
+    typer.Option("--cache-size", metavar="GB", help="Largest size of the cache of condensed gears.",
+                 parser=given_gigabytes, show_default="a tenth of the free disk"),
+]
+
+
+def use_cache(no_cache: bool, size: float | None) -> None:
+    """Lets this process and those that it starts use a cache of this size [GB]; None: as the environment says."""
+    if no_cache or size is not None:
+        os.environ[CACHE_SIZE] = "0" if no_cache else f"{size:g}"
+
 
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only.")]
 

@@ -11,7 +11,17 @@ import typer
 
 from evolvent.commands.command import Command
 from evolvent.commands.exit import STATUSES, reported
-from evolvent.commands.options import Force, LevelOption, Overrides, Quiet, given_count, given_path
+from evolvent.commands.options import (
+    CacheSize,
+    Force,
+    LevelOption,
+    NoCache,
+    Overrides,
+    Quiet,
+    given_count,
+    given_path,
+    use_cache,
+)
 from evolvent.commands.scene_argument import require, warn, with_level
 from evolvent.fem.parallel.mpi_start import world
 
@@ -53,6 +63,8 @@ def study(
         bool, typer.Option("--overwrite", help="Replace the table of another study in DIR; its scenes stay.")
     ] = False,
     quiet: Quiet = False,
+    no_cache: NoCache = False,
+    cache_size: CacheSize = None,
 ) -> None:
     """Compute many scenes.
 
@@ -66,6 +78,7 @@ def study(
         require(workers is None or scheduler is None, both)
         if workers is not None and not force:
             _require_room(workers)
+        use_cache(no_cache, cache_size)
         from evolvent.fem.backend.dolfinx_compat import versions
         from evolvent.run.study.local_workers import LocalWorkers
         from evolvent.run.study.plan.study_file import load_study

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from mpi4py import MPI
 
-from evolvent.fem.cache.cache import Cache
+from evolvent.fem.cache.cache import NOT_KEPT, Cache
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import shared, together
 from evolvent.gears.condensed_gear import GearBody
@@ -137,14 +137,17 @@ def prepare_model(
     comm: MPI.Comm = MPI.COMM_WORLD,
     mesh: Mesher = run_mesh,
     meshed: Callable[[], None] = lambda: None,
+    as_meshed: bool = False,
 ) -> Preparation:
     """Meshes and condenses both gears; all ranks of `comm` call it.
 
-    mesh: makes a sector's mesh, by default that of the problem; meshed: called when both gears are meshed.
+    mesh: makes a sector's mesh, by default that of the problem; meshed: called when both gears are meshed; as_meshed:
+    whether sectors are condensed as `mesh` makes them, and not kept, for flanks that wear; else without modifications,
+    and from the cache where they are there.
 
     Raises MeshError, TooMuchRelief, NotPositiveDefinite, OutOfMemory.
     """
-    return condensed_gears([problem], comm, mesh, meshed).under(problem)
+    return condensed_gears([problem], comm, mesh, meshed, as_meshed).under(problem)
 
 
 def condensed_gears(
@@ -152,17 +155,19 @@ def condensed_gears(
     comm: MPI.Comm = MPI.COMM_WORLD,
     mesh: Mesher = run_mesh,
     meshed: Callable[[], None] = lambda: None,
+    as_meshed: bool = False,
 ) -> CondensedGears:
     """The gears of problems of one `shared_gears_name`, condensed once; see `prepare_model`."""
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]
     finest = min(problems, key=lambda problem: problem.torque)
-    meshes = together(comm, lambda: {member: MeshedSector.of(finest, member, mesh) for member in own})
+    sector = MeshedSector.as_meshed if as_meshed else MeshedSector.of
+    meshes = together(comm, lambda: {member: sector(finest, member, mesh) for member in own})
     after_meshing = time.perf_counter()
     meshed()
     omitted = {member: {_omitted(problem, finest, member) for problem in problems} for member in Member}
-    built = _condensed(finest, meshes, omitted, comm)
+    built = _condensed(finest, meshes, omitted, comm, NOT_KEPT if as_meshed else Cache.of_environment())
     pinion, wheel = (shared(comm, built.pop(member, None), member % comm.size) for member in Member)
     seconds = after_meshing - begin, time.perf_counter() - after_meshing
     return CondensedGears(finest, (pinion, wheel), *seconds)
@@ -178,10 +183,10 @@ def _omitted(problem: GearProblem, finest: GearProblem, member: Member) -> int:
 
 def _condensed(
     problem: GearProblem, sectors: Mapping[Member, MeshedSector], omitted: Mapping[Member, Collection[int]],
-    comm: MPI.Comm,
+    comm: MPI.Comm, cache: Cache,
 ) -> dict[Member, dict[int, GearBody]]:
     """The gears whose meshes this rank has, by how many of the finest levels are omitted. Collective."""
-    cores, cache = Cores(comm), Cache.of_environment()
+    cores = Cores(comm)
     levelled = {m: each.mesh for m, each in sectors.items() if isinstance(each.mesh, LevelledMesh)}
     plain = {m: each for m, each in sectors.items() if m not in levelled}
 

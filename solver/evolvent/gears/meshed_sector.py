@@ -33,6 +33,11 @@ class MeshedSector:
     """The same cells without modifications; None: those of `mesh`."""
 
     @staticmethod
+    def as_meshed(problem: GearProblem, member: Member, mesh: Mesher) -> MeshedSector:
+        """Meshes a sector that is condensed as it is. Raises MeshError, TooMuchRelief."""
+        return MeshedSector(mesh(problem, member), None)
+
+    @staticmethod
     def of(problem: GearProblem, member: Member, mesh: Mesher) -> MeshedSector:
         """Meshes a sector. Raises MeshError, TooMuchRelief."""
         made, gear = mesh(problem, member), problem.pair.gears[member]

@@ -42,7 +42,8 @@ def two_level_pair(
     Raises NotPositiveDefinite, OutOfMemory, OSError.
     """
     names = {m: cache.name(flank_inputs(problem, m, sector, counts[m])) for m, sector in sectors.items()}
-    kept = {m: found for m in sectors if (found := cache.read(names[m], CondensedFlanks)) is not None}
+    about = {m: f"flank in levels, {in_words(problem.pair.gears[m])}" for m in sectors}
+    kept = {m: found for m in sectors if (found := cache.read(names[m], CondensedFlanks, about[m])) is not None}
 
     def patches() -> dict[Member, FlankPatches]:
         return {m: FlankPatches.of(problem, m, sectors[m], counts[m]) for m in sectors if m not in kept}
@@ -63,7 +64,7 @@ def two_level_pair(
         body, sector, flanks = coarse[member], sectors[member], kept.get(member)
         if flanks is None:
             flanks = new[member].condensed(body.material, known)
-            cache.write(names[member], flanks, CondensedFlanks, f"flank in levels, {in_words(body.gear)}")
+            cache.write(names[member], flanks, CondensedFlanks, about[member])
         return corrected_gears(problem, body, sector, flanks, sum(each.seconds for each in known.values()))
 
     gears = together(comm, lambda: {member: corrected(member) for member in sectors}, cores.lent)

@@ -91,7 +91,7 @@ def mesh_motion_of(call: Call, scene: Scene) -> GearMeshMotion:
     given, module = scene.wear.refresh_um, scene.pair.normal_module_mm
 
     def condensed(mesh: Callable[[Member], MeshData]) -> GearModel:
-        model = prepare_model(gear_problem(scene), call.comm, lambda _, member: mesh(member)).model
+        model = prepare_model(gear_problem(scene), call.comm, lambda _, member: mesh(member), as_meshed=True).model
         call.log.info("the meshes have followed the wear; both gears are condensed again")
         return model
 

@@ -71,7 +71,7 @@ class Cache:
         of the value, see `coded`.
         """
         name = self.name(inputs)
-        found = self.read(name, kind)
+        found = self.read(name, kind, about)
         if found is None:
             found = make()
             self.write(name, found, kind, about)
@@ -81,21 +81,22 @@ class Cache:
         """Name of the value for some inputs; empty where nothing is kept."""
         return digest((program_identity(), inputs)) if self.folder else ""
 
-    def read(self, name: str, kind: type[T]) -> T | None:
+    def read(self, name: str, kind: type[T], about: str) -> T | None:
         """The value of a name, its arrays read-only; None where there is none, or one that is damaged, which is removed
-        and logged."""
+        and logged. about: what it is, in words."""
         if not self.folder:
             return None
         path = self.folder / (name + SUFFIX)
         try:
             found = decoded(read_value(path), kind)
             os.utime(path)
+            _log("from the cache: %s", about)
             return found
         except FileNotFoundError:
             return None
         except Exception as error:  # cattrs and NumPy raise whatever the bytes of another file lead them to
             reason = str(error) if isinstance(error, DamagedFile) else f"{type(error).__name__}: {error}"
-            _log("%s: wanted condensed gears, found a damaged file (%s); it is made again", path, reason)
+            _log("%s: wanted %s, found a damaged file (%s); it is made again", path, about, reason)
             with suppress(OSError):
                 path.unlink()
             return None

@@ -57,7 +57,7 @@ def wearing_pair(
         problem = replace(problem, mesh=replace(problem.mesh, two_level=False))
 
     def condensed(mesh: Callable[[Member], MeshData]) -> GearModel:
-        return prepare_model(problem, comm, lambda _, member: mesh(member)).model
+        return prepare_model(problem, comm, lambda _, member: mesh(member), as_meshed=True).model
 
     depth = REFRESH * problem.pair.pinion.normal_module if refresh is None else refresh
     pitch = uniform_pitch(problem.pair.pinion.z, int(positions))

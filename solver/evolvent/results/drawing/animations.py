@@ -6,6 +6,7 @@ import io
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
@@ -22,6 +23,15 @@ def frame(figure: Figure) -> Image.Image:
     figure.set_dpi(100)
     canvas.draw()
     return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+
+
+def settled(figure: Figure, axes: Axes) -> tuple[int, int, int, int]:
+    """Lays the figure out once for all its frames. Gives the left, upper, right and lower end of the axes [pixels of a
+    frame]."""
+    height = frame(figure).height
+    figure.set_layout_engine("none")
+    left, low, right, high = (round(each) for each in axes.get_window_extent().extents)
+    return left, height - high, right, height - low
 
 
 def gif(frames: Sequence[Image.Image]) -> bytes:

@@ -77,7 +77,7 @@ def styled() -> Iterator[None]:
 def sheet(title: str, subtitle: str, size: tuple[float, float] = (9.6, 5.4)) -> Figure:
     """An empty figure with title and subtitle. subtitle: the main result in a sentence; size: width and height
     [inch]."""
-    title, subtitle = drawable(title), drawable(subtitle)
+    title = drawable(title)
     figure = Figure(figsize=size, layout="constrained")
     band, left, bottom = 0.62 / size[1], 0.14 / size[0], 0.08 / size[1]
     inside = (0.5 * left, bottom, 1.0 - 1.5 * left, 1.0 - band - bottom)  # labels extend beyond their axes
@@ -86,10 +86,17 @@ def sheet(title: str, subtitle: str, size: tuple[float, float] = (9.6, 5.4)) -> 
         left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK,
         parse_math=False,  # a user's words, not a formula
     )
-    width = TextPath((0.0, 0.0), subtitle, size=10.0).get_extents().width / 72.0 if subtitle else 0.0
-    subtitle_size = 10.0 * min(1.0, (size[0] - 0.3) / max(width, 1e-9))
-    figure.text(left, 1.0 - 0.42 / size[1], subtitle, va="top", ha="left", fontsize=subtitle_size, color="#444444")
+    figure.text(left, 1.0 - 0.42 / size[1], "", va="top", ha="left", color="#444444")
+    set_subtitle(figure, subtitle)
     return figure
+
+
+def set_subtitle(figure: Figure, subtitle: str) -> None:
+    """Writes a subtitle below the title of a `sheet`, in smaller letters where it would be wider than the figure."""
+    text = drawable(subtitle)
+    width = TextPath((0.0, 0.0), text, size=10.0).get_extents().width / 72.0 if text else 0.0
+    size = 10.0 * min(1.0, (figure.get_figwidth() - 0.3) / max(width, 1e-9))
+    figure.texts[1].set(text=text, fontsize=size)
 
 
 def foot(figure: Figure, *sentences: str) -> None:

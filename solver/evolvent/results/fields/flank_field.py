@@ -19,6 +19,9 @@ from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
+POINTS = (420, 160)
+"""Points on a flank, along the profile and across the face, in a picture of about 1000 pixels."""
+
 
 @dataclass(frozen=True)
 class FlankField:
@@ -100,7 +103,7 @@ class Patch:
         return field.at(line_distance(run.pair, result, tooth, self.gear, ρ, z), self.z)
 
 
-def flank_patch(run: RunData, gear: Member, count: tuple[int, int] = (420, 160)) -> Patch:
+def flank_patch(run: RunData, gear: Member, count: tuple[int, int] = POINTS) -> Patch:
     """The whole meshed flank of a gear. count: numbers of points along the profile and across the face."""
     ρ = flank_nodes(run.pair.gears[gear], run.shapes[gear]).roll_length
     half = 0.5 * run.pair.gears[gear].face_width

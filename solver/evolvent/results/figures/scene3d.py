@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,7 @@ from numpy.typing import NDArray
 
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.drawing.style import FAINT, OVER, PINION_BODY, PRESSURE_MAP, WHEEL_BODY
-from evolvent.results.fields.flank_field import Patch, flank_field, flank_patch
+from evolvent.results.fields.flank_field import POINTS, Patch, flank_field, flank_patch
 from evolvent.results.fields.paraview import poly_data
 from evolvent.results.fields.polygons import Polygons, all_teeth, place, placed_teeth
 from evolvent.results.run_data import RunData
@@ -24,6 +26,8 @@ Image = NDArray[np.uint8]
 BODY = (PINION_BODY, WHEEL_BODY)
 NEAR = 3
 """Number of teeth on either side of the mesh that are visible at close range."""
+TRANSPARENT = 0.22
+"""Opacity of a wheel through which the pinion is seen."""
 LIGHT = {"ambient": 0.28, "diffuse": 0.75, "specular": 0.15, "specular_power": 20.0}
 
 
@@ -41,33 +45,93 @@ class Camera:
     """Upward direction of the image."""
 
 
+@dataclass(frozen=True)
+class Flank:
+    """A loaded flank, coloured by pressure."""
+
+    tooth: int
+    """Index of its tooth pair."""
+    patch: Patch
+    """Points on it."""
+    mesh: Any
+    """Its mesh with the pressure at these points (pyvista's PolyData)."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a gear in a plotter, which is built once and turns with the gear."""
+
+    gear: Member
+    """Pinion or wheel."""
+    built: PositionResult
+    """Position at which its points lie."""
+    actors: list[Any]
+    """Actors of its surface and of lines on it."""
+    flank: Flank | None = None
+    """The loaded flank that it is; None for the body with its other surfaces."""
+
+    def turn(self, run: RunData, result: PositionResult) -> None:
+        """Shows it where the gear stands at a position, with the pressure there."""
+        motion, then, now = np.eye(4), self.built.stand, result.stand
+        motion[:3, :3] = now.rotation(self.gear, 3) @ then.rotation(self.gear, 3).T
+        motion[:3, 3] = now.centre(self.gear, 3) - motion[:3, :3] @ then.centre(self.gear, 3)
+        for actor in self.actors:
+            actor.user_matrix = motion
+        if self.flank is not None:
+            self.flank.mesh["values"] = _pressure(run, result, self.flank.patch, self.flank.tooth).ravel()
+
+
 def contact_teeth(result: PositionResult) -> list[int]:
     """Tooth pairs in contact, ascending."""
     return sorted(set(result.tooth[result.pressure > 0.0].tolist()))
 
 
-def pair_picture(run: RunData, result: PositionResult, top: float, size: tuple[int, int], close: float = 0.0) -> Image:
-    """Image of both gears at a position; the wheel is transparent, so that the pinion's contact lines are visible.
+def pair_pictures(
+    run: RunData, results: Iterable[PositionResult], top: float, size: tuple[int, int], close: float = 0.0,
+    points: tuple[int, int] = POINTS,
+) -> Iterator[Image]:
+    """Images of both gears at one position after the other; the wheel is transparent, so that the pinion's contact
+    lines are visible. From image to image the gears turn; they are built again where other teeth are in contact.
 
     top: pressure at the upper end of the colour scale [MPa]; size: width and height in pixels; close: from 0 for a view
-    of the whole pinion to 1 for the mesh.
+    of the whole pinion to 1 for the mesh; points: on a flank, along the profile and across the face.
     """
-    pinion, pitch = run.pair.pinion, 0.5 * run.pair.working_pitch_diameters[0]
-    scene = _plotter(size)
-    _add_gear(scene, run, result, Member.PINION, all_teeth(run, Member.PINION), opacity=1.0)
-    _add_flanks(scene, run, result, Member.PINION, top)
-    _add_gear(scene, run, result, Member.WHEEL, all_teeth(run, Member.WHEEL), opacity=0.22)
-    target = ((0.66 + 0.36 * close) * pitch, 0.0, 0.0)
-    reach = (0.6 - 0.28 * close) * pinion.tip_diameter
-    return _picture(scene, Camera(target, (0.35, 1.0, 0.6), reach))
+    scene, pitch = _plotter(size), 0.5 * run.pair.working_pitch_diameters[0]
+    target, reach = ((0.66 + 0.36 * close) * pitch, 0.0, 0.0), (0.6 - 0.28 * close) * run.pair.pinion.tip_diameter
+    patch, shown = flank_patch(run, Member.PINION, points), dict[tuple[int, ...], Part]()
+    try:
+        for result in results:
+            shown = _turned(scene, shown, run, result, patch, top)
+            yield _image(scene, Camera(target, (0.35, 1.0, 0.6), reach))
+    finally:
+        scene.close()
+
+
+def _turned(
+    scene: Any, shown: dict[tuple[int, ...], Part], run: RunData, result: PositionResult, patch: Patch, top: float
+) -> dict[tuple[int, ...], Part]:
+    """Parts of the pair at a position: by gear and teeth in contact the bodies, by tooth the pinion's flanks. shown:
+    those of the position before, of which those that are needed are turned and the others removed."""
+    teeth = contact_teeth(result)
+    build: dict[tuple[int, ...], Callable[[], Part]] = {
+        (Member.PINION, *teeth): partial(_body, scene, run, result, Member.PINION, 1.0),
+        **{(tooth,): partial(_flank, scene, run, result, patch, tooth, top) for tooth in teeth},
+        (Member.WHEEL, *teeth): partial(_body, scene, run, result, Member.WHEEL, TRANSPARENT),
+    }
+    for name in shown.keys() - build.keys():
+        scene.remove_actor(shown[name].actors, render=False)
+    for name in shown.keys() & build.keys():
+        shown[name].turn(run, result)
+    return {name: shown[name] if name in shown else new() for name, new in build.items()}
 
 
 def gear_picture(run: RunData, result: PositionResult, gear: Member, top: float, size: tuple[int, int]) -> Image:
     """Image of the loaded flanks of one gear, from the place of the other gear, which is left out. top, size: see
-    `pair_picture`."""
-    scene = _plotter(size)
-    _add_gear(scene, run, result, gear, all_teeth(run, gear), opacity=1.0)
-    _add_flanks(scene, run, result, gear, top)
+    `pair_pictures`."""
+    scene, patch = _plotter(size), flank_patch(run, gear)
+    _body(scene, run, result, gear, 1.0)
+    for tooth in contact_teeth(result):
+        _flank(scene, run, result, patch, tooth, top)
     return _picture(scene, _at_the_mesh(run, gear))
 
 
@@ -76,7 +140,7 @@ def flank_picture(run: RunData, result: PositionResult, patch: Patch, values: Fl
     """Image of one gear with the same values on all its loaded flanks, without the other gear. values: (n, m) on the
     patch; top: value at the upper end of the colour scale; size: width and height in pixels."""
     scene, gear, near = _plotter(size), patch.gear, list(range(-NEAR, NEAR + 1))
-    _add_gear(scene, run, result, gear, all_teeth(run, gear), 1.0, set(near))
+    _add_gear(scene, run, result, gear, 1.0, set(near))
     surface = patch.polygons(run)
     for tooth in near:
         _add_coloured(scene, place(result, gear, tooth, surface), values, top)
@@ -96,55 +160,69 @@ def _plotter(size: tuple[int, int]) -> Any:
     scene = pv.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
     scene.set_background("white")
     scene.enable_parallel_projection()
-    scene.enable_depth_peeling(8)
+    scene.enable_anti_aliasing("ssaa")
     return scene
 
 
+def _body(scene: Any, run: RunData, result: PositionResult, gear: Member, opacity: float) -> Part:
+    """Adds all teeth of a gear at a position, those in contact without their loaded flanks."""
+    bare = set(contact_teeth(result))
+    return Part(gear, result, _add_gear(scene, run, result, gear, opacity, bare))
+
+
+def _flank(scene: Any, run: RunData, result: PositionResult, patch: Patch, tooth: int, top: float) -> Part:
+    """Adds the loaded flank of a tooth at a position, coloured by pressure up to `top` [MPa]."""
+    surface = place(result, patch.gear, tooth, patch.polygons(run))
+    mesh, actors = _add_coloured(scene, surface, _pressure(run, result, patch, tooth), top)
+    return Part(patch.gear, result, actors, Flank(tooth, patch, mesh))
+
+
+def _pressure(run: RunData, result: PositionResult, patch: Patch, tooth: int) -> Floats:
+    """Pressure (n, m) on the loaded flank of a tooth at a position [MPa]."""
+    return patch.values(run, result, tooth, flank_field(run, result, tooth))
+
+
 def _add_gear(
-    scene: Any, run: RunData, result: PositionResult, gear: Member, teeth: list[int], opacity: float,
-    bare: set[int] | None = None,
-) -> None:
-    """Adds the teeth of a gear. bare: teeth whose loaded flanks are left out, by default those in contact."""
-    placed = placed_teeth(run, result, gear, teeth, set(contact_teeth(result)) if bare is None else bare)
+    scene: Any, run: RunData, result: PositionResult, gear: Member, opacity: float, bare: set[int]
+) -> list[Any]:
+    """Adds all teeth of a gear; gives the actors. bare: teeth whose loaded flanks are left out."""
+    placed = placed_teeth(run, result, gear, all_teeth(run, gear), bare)
     assert placed is not None
     surface = poly_data(placed).triangulate().clean(tolerance=1e-6, absolute=True)
     smooth = surface.compute_normals(split_vertices=True, feature_angle=35.0, consistent_normals=False)
-    scene.add_mesh(smooth, color=BODY[gear], opacity=opacity, smooth_shading=True, **LIGHT)
-    if opacity < 1.0:
-        edges = surface.extract_feature_edges(feature_angle=35.0, boundary_edges=False, manifold_edges=False)
-        scene.add_mesh(edges, color=BODY[gear], line_width=1.0, opacity=0.6)
+    body = scene.add_mesh(smooth, color=BODY[gear], opacity=opacity, smooth_shading=True, render=False, **LIGHT)
+    if opacity == 1.0:
+        return [body]
+    edges = surface.extract_feature_edges(feature_angle=35.0, boundary_edges=False, manifold_edges=False)
+    return [body, scene.add_mesh(edges, color=BODY[gear], line_width=1.0, opacity=0.6, render=False)]
 
 
-def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: Member, top: float) -> None:
-    """Adds the loaded flanks of the teeth in contact, coloured by pressure up to `top` [MPa]."""
-    patch = flank_patch(run, gear)
-    surface = patch.polygons(run)
-    for tooth in contact_teeth(result):
-        field = flank_field(run, result, tooth)
-        _add_coloured(scene, place(result, gear, tooth, surface), patch.values(run, result, tooth, field), top)
-
-
-def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> None:
+def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> tuple[Any, list[Any]]:
     """Adds a surface coloured by values at its points, without lighting: a shaded colour would represent another
-    value."""
+    value. Gives its mesh, whose array "values" is shown, and the actors."""
     mesh = poly_data(surface)
     mesh["values"] = values.ravel()
-    scene.add_mesh(
+    coloured = scene.add_mesh(
         mesh, scalars="values", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, above_color=OVER,
-        show_scalar_bar=False, interpolate_before_map=True, lighting=False,
+        show_scalar_bar=False, interpolate_before_map=True, lighting=False, render=False,
     )
     rim = mesh.extract_feature_edges(feature_edges=False, manifold_edges=False, non_manifold_edges=False)
-    scene.add_mesh(rim, color=FAINT, line_width=1.5, lighting=False)
+    return mesh, [coloured, scene.add_mesh(rim, color=FAINT, line_width=1.5, lighting=False, render=False)]
 
 
 def _picture(scene: Any, camera: Camera) -> Image:
     """Renders the scene and closes its plotter."""
+    image = _image(scene, camera)
+    scene.close()
+    return image
+
+
+def _image(scene: Any, camera: Camera) -> Image:
+    """Renders the scene."""
     target, along = np.array(camera.target), np.array(camera.along)
     eye = target + 500.0 * along / np.linalg.norm(along)
     scene.camera_position = [tuple(eye), camera.target, camera.up]
     scene.camera.parallel_scale = camera.reach
     scene.reset_camera_clipping_range()
-    scene.enable_anti_aliasing("ssaa")
-    image = scene.screenshot(return_img=True)
-    scene.close()
-    return np.asarray(image)
+    scene.render()  # a screenshot alone renders the first time only
+    return np.asarray(scene.screenshot(return_img=True))

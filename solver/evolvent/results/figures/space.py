@@ -7,19 +7,25 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 from PIL import Image
 
-from evolvent.results.drawing.animations import frame, gif
-from evolvent.results.drawing.style import ABOVE, FAINT, OVER_KINK, PINION, PRESSURE_MAP, sheet
+from evolvent.results.drawing.animations import frame, gif, settled
+from evolvent.results.drawing.style import ABOVE, FAINT, OVER_KINK, PINION, PRESSURE_MAP, set_subtitle, sheet
 from evolvent.results.engagement import Engagement, engagement
 from evolvent.results.figures.flank import pressure_top
-from evolvent.results.figures.scene3d import gear_picture, pair_picture
+from evolvent.results.figures.scene3d import gear_picture, pair_pictures
 from evolvent.results.figures.stress import STRESS, TOOTH_ANGLE
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import position_row
 from evolvent.results.tables.summary_rows import PositionRow
 from evolvent_meshes.gears.member import Member
+
+VIEW_ASPECT = 0.84
+"""Height over width of the pair in the animation."""
+VIEW_POINTS = (210, 80)
+"""Points on its flanks, along the profile and across the face: at most three pixels apart."""
 
 
 def loaded_pair(run: RunData, index: int = 0) -> Figure:
@@ -32,9 +38,10 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     subtitle += f" (φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g})."
     figure = sheet(f"{run.scene.title}: pressure on the flanks", subtitle, (12.4, 7.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
+    [pair] = pair_pictures(run, [result], top, (1500, 1060))
     _image(
         figure.add_subplot(grid[:, 0]),
-        pair_picture(run, result, top, (1500, 1060)),
+        pair,
         "gear pair, wheel transparent (colours seen through it are altered)",
     )
     _image(
@@ -75,9 +82,21 @@ def _image(axes: Axes, image: NDArray[np.uint8], title: str) -> None:
 
 def animation(run: RunData, index: int = 0) -> bytes:
     """The content of a GIF file with one pitch. It repeats without a seam, since after a pitch every tooth has reached
-    the place of the one ahead of it."""
+    the place of the one ahead of it.
+
+    Axes, curve and layout are those of all frames; a rendered view fills the left axes pixel by pixel.
+    """
     curve, top = engagement(run, index), pressure_top(run, index)
-    return gif([_frame(run, index, k, curve, top) for k in range(len(run.positions))])
+    figure, view, dots = _stage(run, curve, top)
+    left, upper, right, lower = settled(figure, view)
+    results = [each[index].result for each in run.positions]
+    images = pair_pictures(run, results, top, (right - left, lower - upper), close=1.0, points=VIEW_POINTS)
+    frames = []
+    for k, image in enumerate(images):
+        _set_position(dots, run, index, k, curve)
+        frames.append(frame(figure))
+        frames[k].paste(Image.fromarray(image), (left, upper))
+    return gif(frames)
 
 
 def _largest(row: PositionRow) -> str:
@@ -89,20 +108,28 @@ def _largest(row: PositionRow) -> str:
     return "".join(f", {words}" for words in (*kink, *peak))
 
 
-def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:
-    """A frame: the pair, and its teeth in contact on the curve of contact stress."""
-    result = run.positions[k][index].result
-    subtitle = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: tooth pairs in contact."
-    figure = sheet(run.scene.title, subtitle, (9.0, 5.0))
+def _stage(run: RunData, curve: Engagement, top: float) -> tuple[Figure, Axes, Line2D]:
+    """Figure of all frames: empty axes for the pair, the curve of contact stress, and dots of which none is shown yet;
+    gives figure, empty axes and dots."""
+    figure = sheet(run.scene.title, "", (9.0, 5.0))
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
-    left.imshow(pair_picture(run, result, top, (620, 520), close=1.0))
+    left.set_box_aspect(VIEW_ASPECT)
     left.axis("off")
     scale = ScalarMappable(Normalize(0.0, top), PRESSURE_MAP)
     bar = {"fraction": 0.06, "pad": 0.01, "shrink": 0.8, "aspect": 40, "extend": "max"}
-    figure.colorbar(scale, ax=left, location="bottom", label=f"pressure [MPa]   ({ABOVE})", **bar)
+    shown = figure.colorbar(scale, ax=left, location="bottom", **bar)
+    shown.set_label(f"pressure [MPa]\n({ABOVE})", size=9.0)
     right.plot(np.degrees(curve.angle), curve.max_pressure, color=FAINT)
-    here = curve.position == k
-    right.plot(np.degrees(curve.angle[here]), curve.max_pressure[here], "o", color=PINION, markersize=8)
+    [dots] = right.plot([], [], "o", color=PINION, markersize=8)
     right.set(xlabel=TOOTH_ANGLE.split("   ")[0], ylabel=STRESS)
     right.set_ylim(bottom=0.0)
-    return frame(figure)
+    return figure, left, dots
+
+
+def _set_position(dots: Line2D, run: RunData, index: int, k: int, curve: Engagement) -> None:
+    """Shows position k in the figure of all frames: its angle, and its teeth in contact on the curve."""
+    assert isinstance(dots.figure, Figure)
+    words = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: tooth pairs in contact."
+    set_subtitle(dots.figure, words)
+    here = curve.position == k
+    dots.set_data(np.degrees(curve.angle[here]), curve.max_pressure[here])

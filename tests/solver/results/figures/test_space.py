@@ -1,22 +1,58 @@
-"""Rendered views: colours on a flank are those of the colour bar."""
+"""Rendered views: colours on a flank are those of the colour bar; gears that turn are as if built anew."""
 
 from __future__ import annotations
 
+import io
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
+from PIL import Image, ImageSequence
 
 from evolvent.results.drawing.offscreen import off_screen
-from evolvent.results.drawing.style import PRESSURE_MAP
+from evolvent.results.drawing.style import PRESSURE_MAP, styled
 from evolvent.results.fields.flank_field import flank_patch
-from evolvent.results.figures.scene3d import flank_picture
-from evolvent.results.figures.space import _largest
+from evolvent.results.figures.scene3d import contact_teeth, flank_picture, pair_pictures
+from evolvent.results.figures.space import _largest, animation
 from evolvent.results.tables.figure_rows import position_row
 from evolvent_meshes.gears.member import Member
 from tests.support.synthetic_run import synthetic_run
 
 LEVELS = 3.0  # of 255 by which the graphics driver may round a colour
+ROUNDED = 24  # of 255; single pixels at edges, since points are rounded after another turn
+
+
+def test_gears_that_turn_are_as_if_built_anew() -> None:
+    """Problem: positions of a pitch between which a tooth comes into contact and another one leaves it. Exact: each
+    image is that of its position alone, in a plotter of its own. Within a step the image changes by far more."""
+    run = synthetic_run("contact.friction=0.1")
+    results = [each[0].result for each in run.positions]
+    chosen = [results[k] for k in sorted({0, 1, len(results) // 2, len(results) - 1})]
+    assert len({tuple(contact_teeth(result)) for result in chosen}) > 1
+    with off_screen():
+        turned = list(pair_pictures(run, chosen, 2000.0, (200, 160), close=1.0))
+        anew = [image for result in chosen for image in pair_pictures(run, [result], 2000.0, (200, 160), close=1.0)]
+    for k, (image, wanted) in enumerate(zip(turned, anew)):
+        assert np.abs(image.astype(int) - wanted).max() <= ROUNDED
+        assert k == 0 or np.abs(image.astype(int) - anew[k - 1]).max() > 3 * ROUNDED
+
+
+def test_only_what_belongs_to_the_position_changes_from_frame_to_frame() -> None:
+    """Problem: three positions of a pitch. Exact: view, subtitle and dots differ between any two frames; title, colour
+    bar, axes and their numbers stand still, to the pixel."""
+    run = synthetic_run("contact.friction=0.1")
+    short = replace(run, positions=run.positions[:3])
+    with styled(), off_screen(), Image.open(io.BytesIO(animation(short))) as film:
+        frames = [np.asarray(each.convert("RGB")) for each in ImageSequence.Iterator(film)]
+    assert len(frames) == 3
+    title, subtitle, view, curve, middle, below = (
+        np.s_[:34], np.s_[34:60], np.s_[75:380, 50:415], np.s_[75:380, 530:], np.s_[62:, 430:520], np.s_[400:]
+    )
+    for a, b in combinations(frames, 2):
+        changes = (a != b).any(axis=-1)
+        assert all(changes[part].any() for part in (subtitle, view, curve))
+        assert not any(changes[part].any() for part in (title, middle, below))
 
 
 @pytest.mark.parametrize("gear", Member)

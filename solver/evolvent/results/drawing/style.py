@@ -100,8 +100,11 @@ def set_subtitle(figure: Figure, subtitle: str) -> None:
 
 
 def text_width(text: str, size: float) -> float:
-    """Width of a text in letters of a size [points], in inches. It is that of the outline's points, between which no letter
-    bulges out sideways; extrema of all its curves would take a tenth of a second."""
+    """Width of a text [inch]. size: of its letters [points].
+
+    It is that of the points of the letters' outlines, between which none bulges out sideways. Finding the extrema of
+    all curves would take a tenth of a second.
+    """
     outline = TextPath((0.0, 0.0), text, size=size)
     drawn = outline.vertices[outline.codes != Outline.CLOSEPOLY, 0]  # closing points lie at the origin
     return float(np.ptp(drawn)) / 72.0 if len(drawn) else 0.0

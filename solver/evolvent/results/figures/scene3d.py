@@ -54,7 +54,7 @@ class Flank:
     patch: Patch
     """Points on it."""
     mesh: Any
-    """Its mesh with the pressure at these points (pyvista's PolyData)."""
+    """Surface that pyvista shows, with the pressure at these points as its array "values" [MPa]."""
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,19 @@ LEVELS = 3.0  # of 255 by which the graphics driver may round a colour
 ROUNDED = 24  # of 255; single pixels at edges, since points are rounded after another turn
 
 
-def test_gears_that_turn_are_as_if_built_anew() -> None:
+PAIRS = {
+    "helical": ("demos/yang2022.toml", ()),
+    "plane, driven by its wheel": ("demos/he2022.toml", ("load.driving=wheel",)),
+    "with a tilted wheel": ("demos/yang2022.toml", ("pair.misalignment_um=300.0",)),
+}
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_gears_that_turn_are_as_if_built_anew(name: str) -> None:
     """Problem: positions of a pitch between which a tooth comes into contact and another one leaves it. Exact: each
-    image is that of its position alone, in a plotter of its own. Within a step the image changes by far more."""
-    run = synthetic_run("contact.friction=0.1")
+    image is that of its position alone, in a plotter of its own. From one to the next the image changes by far more."""
+    file, overrides = PAIRS[name]
+    run = synthetic_run("contact.friction=0.1", *overrides, file=file)
     results = [each[0].result for each in run.positions]
     chosen = [results[k] for k in sorted({0, 1, len(results) // 2, len(results) - 1})]
     assert len({tuple(contact_teeth(result)) for result in chosen}) > 1

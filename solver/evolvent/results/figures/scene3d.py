@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -89,16 +89,18 @@ def contact_teeth(result: PositionResult) -> list[int]:
 def pair_pictures(
     run: RunData, results: Iterable[PositionResult], top: float, size: tuple[int, int], close: float = 0.0,
     points: tuple[int, int] = POINTS,
-) -> Iterator[Image]:
+) -> Generator[Image, None, None]:
     """Images of both gears at one position after the other; the wheel is transparent, so that the pinion's contact
     lines are visible. From image to image the gears turn; they are built again where other teeth are in contact.
 
     top: pressure at the upper end of the colour scale [MPa]; size: width and height in pixels; close: from 0 for a view
     of the whole pinion to 1 for the mesh; points: on a flank, along the profile and across the face.
+
+    The generator holds a window. A caller that does not take all images must close it.
     """
     scene, pitch = _plotter(size), 0.5 * run.pair.working_pitch_diameters[0]
     target, reach = ((0.66 + 0.36 * close) * pitch, 0.0, 0.0), (0.6 - 0.28 * close) * run.pair.pinion.tip_diameter
-    patch, shown = flank_patch(run, Member.PINION, points), dict[tuple[int, ...], Part]()
+    patch, shown = flank_patch(run, Member.PINION, points), dict[str, Part]()
     try:
         for result in results:
             shown = _turned(scene, shown, run, result, patch, top)
@@ -108,15 +110,15 @@ def pair_pictures(
 
 
 def _turned(
-    scene: Any, shown: dict[tuple[int, ...], Part], run: RunData, result: PositionResult, patch: Patch, top: float
-) -> dict[tuple[int, ...], Part]:
-    """Parts of the pair at a position: by gear and teeth in contact the bodies, by tooth the pinion's flanks. shown:
-    those of the position before, of which those that are needed are turned and the others removed."""
+    scene: Any, shown: dict[str, Part], run: RunData, result: PositionResult, patch: Patch, top: float
+) -> dict[str, Part]:
+    """Parts of the pair at a position by name: both bodies, and the pinion's flanks in contact. shown: those of the
+    position before, of which those that are needed are turned and the others removed."""
     teeth = contact_teeth(result)
-    build: dict[tuple[int, ...], Callable[[], Part]] = {
-        (Member.PINION, *teeth): partial(_body, scene, run, result, Member.PINION, 1.0),
-        **{(tooth,): partial(_flank, scene, run, result, patch, tooth, top) for tooth in teeth},
-        (Member.WHEEL, *teeth): partial(_body, scene, run, result, Member.WHEEL, TRANSPARENT),
+    build: dict[str, Callable[[], Part]] = {
+        f"pinion without flanks {teeth}": partial(_body, scene, run, result, Member.PINION, 1.0),
+        **{f"flank {tooth}": partial(_flank, scene, run, result, patch, tooth, top) for tooth in teeth},
+        f"wheel without flanks {teeth}": partial(_body, scene, run, result, Member.WHEEL, TRANSPARENT),
     }
     for name in shown.keys() - build.keys():
         scene.remove_actor(shown[name].actors, render=False)

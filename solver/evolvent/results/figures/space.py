@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import closing
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -92,10 +94,11 @@ def animation(run: RunData, index: int = 0) -> bytes:
     results = [each[index].result for each in run.positions]
     images = pair_pictures(run, results, top, (right - left, lower - upper), close=1.0, points=VIEW_POINTS)
     frames = []
-    for k, image in enumerate(images):
-        _set_position(dots, run, index, k, curve)
-        frames.append(frame(figure))
-        frames[k].paste(Image.fromarray(image), (left, upper))
+    with closing(images):
+        for k, image in enumerate(images):
+            _set_position(dots, run, index, k, curve)
+            frames.append(frame(figure))
+            frames[k].paste(Image.fromarray(image), (left, upper))
     return gif(frames)
 
 

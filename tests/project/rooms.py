@@ -26,7 +26,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "contact.search": ("meshes", "fem"),
     "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
     "contact.newton": ("meshes", "fem.backend", "contact.nitsche"),
-    "contact.two_level": ("meshes", "meshes.mesh", "fem", "fem.condensation", "contact.nitsche"),
+    "contact.two_level": ("meshes", "meshes.mesh", "fem", "fem.condensation", "fem.parallel", "contact.nitsche"),
     "contact.problem": ("meshes", "fem", "fem.backend", "fem.condensation", "contact.nitsche"),
     "contact.step": (
         "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
@@ -42,8 +42,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "gears.ring": ("meshes", "fem.condensation", "contact.nitsche", "contact.newton"),
     "gears.two_level": (
-        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "contact.newton", "contact.two_level",
-        "gears.meshing", "gears.ring",
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "contact.newton",
+        "contact.two_level", "gears.meshing", "gears.ring",
     ),
     "gears": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "fem.condensation",

@@ -13,6 +13,7 @@ from evolvent.contact.nitsche.flux_recovery import SAFETY, NitscheTraction, nits
 from evolvent.fem.cache.cache import NOT_KEPT, Cache
 from evolvent.fem.material import Material
 from evolvent.fem.parallel.cores import Threads
+from evolvent.fem.parallel.memory import Stack
 from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh
@@ -71,10 +72,11 @@ class FlankPatches:
         levels = enumerate(self.patches)
         return {(level, patch.block): patch for level, patches in levels for patch in patches}
 
-    def response(self, name: PatchName) -> TimedResponse:
-        """Condenses a patch. Raises NotPositiveDefinite, OutOfMemory."""
+    def response(self, name: PatchName, stack: Stack) -> TimedResponse:
+        """Condenses a patch. stack: memory of the patches, one after the other. Raises NotPositiveDefinite,
+        OutOfMemory."""
         begin = time.perf_counter()
-        response = self.levels[name[0]].response(self.named()[name])
+        response = self.levels[name[0]].response(self.named()[name], stack)
         return TimedResponse(response, time.perf_counter() - begin)
 
     def condensed(self, material: Material, responses: Mapping[PatchName, TimedResponse]) -> CondensedFlanks:
@@ -124,9 +126,9 @@ def two_level_gear(
     """
     count = len(sector.levels)
     coarse = coarse_gear(problem, member, sector, threads)
-    patches = FlankPatches.of(problem, member, sector, [count], safety)
-    flanks = patches.condensed(coarse.material, {name: patches.response(name) for name in patches.named()})
-    return corrected_gears(problem, coarse, sector, flanks)[count]
+    patches, stack = FlankPatches.of(problem, member, sector, [count], safety), Stack()
+    responses = {name: patches.response(name, stack) for name in patches.named()}
+    return corrected_gears(problem, coarse, sector, patches.condensed(coarse.material, responses))[count]
 
 
 def coarse_gear(

@@ -9,7 +9,7 @@ from mpi4py import MPI
 from evolvent.fem.cache.cache import NOT_KEPT, Cache
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.division import divided, exchanged
-from evolvent.fem.parallel.memory import return_free_memory
+from evolvent.fem.parallel.memory import Stack, return_free_memory
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.condensed_gear import GearBody, in_words
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh
@@ -53,7 +53,8 @@ def two_level_pair(
 
     def condensed() -> tuple[dict[Member, GearBody], dict[NamedPatch, TimedResponse]]:
         bodies = {m: coarse_gear(problem, m, sector, cores.used, cache) for m, sector in sectors.items()}
-        return bodies, {(m, name): new[m].response(name) for m, name in own}
+        stack = Stack()
+        return bodies, {(m, name): new[m].response(name, stack) for m, name in own}
 
     coarse, some = together(comm, condensed, cores.lent)
     responses = exchanged(comm, some)

@@ -61,11 +61,20 @@ class NitscheTraction:
 
     def constant_term(self) -> sp.csr_matrix:
         """Matrix (N·d, N·d) of ∫ (γ F_n² + γ_t |F_t|²) [N/mm]; −θ times it is added to the body's stiffness."""
-        F, d = self._local_flux(), self.frames.shape[1]
-        is_normal = np.arange(d) == 0
+        F = self._local_flux()
+        return (F.T.tocsr() @ (self._local_weight() @ F)).tocsr()
+
+    def weight(self) -> sp.csr_matrix:
+        """Matrix W (n·d, n·d) with FᵀWF = `constant_term`, symmetric positive definite, in the body's frame [N/mm]."""
+        frames = _block_diagonal(self.frames)
+        return (frames.T @ self._local_weight() @ frames).tocsr()
+
+    def _local_weight(self) -> sp.csr_matrix:
+        """W in the nodal frames."""
+        is_normal = np.arange(self.frames.shape[1]) == 0
         normal, tangential = (sp.kron(_weighted_mass(self.surface, γ), np.diag(which.astype(float)), format="csr")
                               for γ, which in zip(self.stabiliser.T, (is_normal, ~is_normal)))
-        return (F.T.tocsr() @ ((normal + tangential) @ F)).tocsr()
+        return normal + tangential
 
 
 def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> NitscheTraction:

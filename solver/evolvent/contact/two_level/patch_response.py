@@ -15,9 +15,11 @@ import scipy.sparse as sp
 
 from evolvent.contact.nitsche.flux_recovery import nitsche_traction, trace_functionals
 from evolvent.contact.two_level.fine_surface import CoarseBody
+from evolvent.contact.two_level.flux_change import flux_change
 from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.condensation.schur_complement import Factor, compliance, compliance_by_columns
 from evolvent.fem.material import Material
+from evolvent.fem.parallel.memory import Stack
 from evolvent.fem.surface import Surface, surface_of
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -48,7 +50,7 @@ class PatchResponse:
 
 def patch_response(
     body: CoarseBody, patch: Patch, is_held: tuple[str, ...] = (), flux_safety: float | None = None,
-    places: Places | None = None, flux_reach: float = np.inf,
+    places: Places | None = None, flux_reach: float = np.inf, stack: Stack | None = None,
 ) -> PatchResponse:
     """Condenses a patch with fine and with coarse cells.
 
@@ -59,17 +61,20 @@ def patch_response(
     flux_reach: how far what these functionals change is followed beyond the loaded nodes [mm]. They act within a cell
         of the surface and their resultants vanish. Error with 0.6, 1.1, 1.6, 2.1 fine edges, of what all of a patch
         changes: 0.6, 0.5, 0.2, 0.1 %.
+    stack: memory that patches use one after the other (default: one for this patch).
 
     Raises NotPositiveDefinite, OutOfMemory.
     """
-    split, d = body.split_patch(patch), body.mesh.dimension
-    fine, coarse = (_Condensable.of(mesh, body, is_held) for mesh in (split.mesh, patch.mesh))
+    split, d, stack = body.split_patch(patch), body.mesh.dimension, stack or Stack()
+    fine, coarse = (_Condensable.of(mesh, body, is_held, stack) for mesh in (split.mesh, patch.mesh))
     n = len(fine.surface.points)
     loaded = np.ones(n, dtype=bool) if places is None else places(fine.surface.points)
     columns = np.flatnonzero(np.repeat(loaded, d))
     change = fine.columns(columns)
     R = sp.kron(split.values[fine.surface.nodes][:, coarse.surface.nodes], np.eye(d), format="csr")
-    change -= R @ (R[columns] @ coarse.columns(np.arange(R.shape[1]))).T
+    forces = R[columns]
+    onto = np.unique(forces.indices)  # coarse displacements under the loaded nodes
+    change -= R @ (coarse.columns(onto) @ forces[:, onto].T)
     change = change.reshape(n, d, -1, d)
     if flux_safety is None:
         return PatchResponse(fine.surface.points, loaded, change)
@@ -89,7 +94,7 @@ def _with_flux(
     rows, d = number[part.nodes[inner.surface.nodes]], change.shape[1]
     with_force, of_column = loaded[rows], np.cumsum(loaded) - 1
     columns = np.flatnonzero(np.repeat(with_force, d))
-    more = inner.columns(columns, safety) - inner.columns(columns)
+    more = inner.flux_change(columns, safety)
     at = np.ix_(rows, np.arange(d), of_column[rows[with_force]], np.arange(d))
     change[at] += more.reshape(len(rows), d, -1, d)
     return change
@@ -101,6 +106,7 @@ class _Condensable:
 
     stiffness: (n, n) between free degrees of freedom; other entries are not read [N/mm].
     free: degrees of freedom that are not held.
+    stack: memory of the eliminations.
     """
 
     mesh: MeshData
@@ -108,12 +114,14 @@ class _Condensable:
     surface: Surface
     stiffness: sp.csr_matrix
     free: Ints
+    stack: Stack
 
     @staticmethod
-    def of(mesh: MeshData, body: CoarseBody, is_held: tuple[str, ...]) -> _Condensable:
+    def of(mesh: MeshData, body: CoarseBody, is_held: tuple[str, ...], stack: Stack) -> _Condensable:
         held = tuple(Fixed(name) for name in (CUT, *is_held) if len(mesh.facets.get(name, ())))
         assembled = assemble(Body(mesh, body.material, supports=held, name="patch"))
-        return _Condensable(mesh, body.material, surface_of(mesh, body.group), assembled.stiffness, assembled.free)
+        surface = surface_of(mesh, body.group)
+        return _Condensable(mesh, body.material, surface, assembled.stiffness, assembled.free, stack)
 
     def within(self, part: Patch, group: str) -> _Condensable:
         """Part of the patch, held where it is cut out. All cells of a node that is free there are in the part."""
@@ -121,19 +129,22 @@ class _Condensable:
         dofs = (d * part.nodes[:, None] + np.arange(d)).ravel()
         is_free = np.isin(dofs, self.free)
         is_free.reshape(-1, d)[np.unique(part.mesh.facets[CUT])] = False
-        surface = surface_of(part.mesh, group)
-        return _Condensable(part.mesh, self.material, surface, self.stiffness[dofs][:, dofs], np.flatnonzero(is_free))
+        stiffness, surface = self.stiffness[dofs][:, dofs], surface_of(part.mesh, group)
+        return _Condensable(part.mesh, self.material, surface, stiffness, np.flatnonzero(is_free), self.stack)
 
-    def columns(self, columns: Ints, flux_safety: float | None = None) -> Floats:
-        """Some columns of the compliance of the contact surface, (n·d, columns) [mm/N]; flux_safety: see
-        `patch_response`."""
-        K, free = self.stiffness, self.free
-        P = trace_functionals(self.surface, K.shape[0])
-        if flux_safety is not None:
-            traction = nitsche_traction(self.mesh, self.material, self.surface, flux_safety)
-            K, P = K - traction.constant_term(), P - traction.flux()
+    def columns(self, columns: Ints) -> Floats:
+        """Some columns of the compliance of the contact surface, (n·d, columns) [mm/N]."""
+        P = trace_functionals(self.surface, self.stiffness.shape[0])
         if len(columns) < FEW * P.shape[0]:
-            return compliance_by_columns(Factor(K, free), P, P.tocsr()[columns])
-        plain = self.stiffness
-        graph = sp.csr_matrix((np.ones(plain.nnz, dtype=np.int8), plain.indices, plain.indptr), shape=plain.shape)
-        return compliance(K, P, free, graph=graph)[:, columns]
+            return compliance_by_columns(Factor(self.stiffness, self.free), P, P.tocsr()[columns])
+        return compliance(self.stiffness, P, self.free, stack=self.stack)[:, columns]
+
+    def flux_change(self, columns: Ints, safety: float) -> Floats:
+        """Change of some columns of the compliance by Nitsche's functionals, (n·d, columns) [mm/N].
+
+        safety: factor on the stabilisation.
+        """
+        traction = nitsche_traction(self.mesh, self.material, self.surface, safety)
+        functionals = sp.vstack([trace_functionals(self.surface, self.stiffness.shape[0]), traction.flux()], "csr")
+        both = compliance(self.stiffness, functionals, self.free, stack=self.stack)
+        return flux_change(both, traction.weight(), columns)

@@ -83,23 +83,31 @@ class OrderedMatrix:
         corner.sum_duplicates()
         return OrderedMatrix(_reordered(rows, order), corner, tree, settings.factor)
 
-    def schur_complement(self, threads: Threads = nullcontext) -> Floats:
+    def schur_complement(self, threads: Threads = nullcontext, stack: Stack | None = None) -> Floats:
         """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (m × m, C order).
 
         threads: makes the context in which separators are eliminated.
+        stack: memory that many small eliminations use one after the other, without returning any to the system
+            between them (default: one for this elimination, which has to itself all that is free).
         Raises NotPositiveDefinite and OutOfMemory.
         """
-        return_free_memory()
-        (count, columns), corner = self.rows.shape, self.corner
-        result = lazy_zeros(columns - count)  # half of it is not written to before the end
-        retained = np.arange(count, columns)
-        elimination = _Elimination(self.rows, self.factor, Stack(), threads)
-        elimination.subtract(self.tree, retained, PackedTriangle.view(result))
-        del elimination  # frees its stack
-        return_free_memory()
-        result[corner.row, corner.col] += corner.data
+        size = self.rows.shape[1] - self.rows.shape[0]
+        if stack is None:
+            return_free_memory()
+            result = lazy_zeros(size)  # half of it is not written to before the end
+            self._subtract(result, threads, Stack())
+            return_free_memory()
+        else:
+            result = np.zeros((size, size))
+            self._subtract(result, threads, stack)
+        result[self.corner.row, self.corner.col] += self.corner.data
         mumps.fill_symmetric(result)
         return result
+
+    def _subtract(self, result: Floats, threads: Threads, stack: Stack) -> None:
+        """Subtracts A₂₁A₁₁⁻¹A₁₂ from the upper triangle of the result (m × m)."""
+        retained = np.arange(*self.rows.shape)
+        _Elimination(self.rows, self.factor, stack, threads).subtract(self.tree, retained, PackedTriangle.view(result))
 
 
 def _reordered(matrix: sp.csr_matrix, order: Ints) -> sp.csr_matrix:

@@ -23,6 +23,7 @@ import scipy.sparse as sp
 from evolvent.fem.condensation.mumps import NotPositiveDefinite, OutOfMemory, SparseCholesky
 from evolvent.fem.condensation.nested_dissection import DEFAULT_DISSECTION, DissectionSettings, OrderedMatrix
 from evolvent.fem.parallel.cores import Threads
+from evolvent.fem.parallel.memory import Stack
 from evolvent_meshes.arrays import Floats, Ints
 
 __all__ = [
@@ -40,7 +41,7 @@ __all__ = [
 
 def compliance(
     stiffness: sp.spmatrix, functionals: sp.spmatrix, free: Ints | None = None,
-    settings: DissectionSettings = DEFAULT_DISSECTION, graph: sp.spmatrix | None = None,
+    settings: DissectionSettings = DEFAULT_DISSECTION, graph: sp.spmatrix | None = None, stack: Stack | None = None,
 ) -> Floats:
     """Compliance C = P K⁻¹ Pᵀ (m × m, symmetric; mm/N for displacements). Peak memory above K and P: about twice C.
 
@@ -48,6 +49,7 @@ def compliance(
     functionals: P (m × n).
     free: degrees of freedom that are not fixed (default: all).
     graph: (n × n) the pattern that nested dissection divides, see `OrderedMatrix.of` (default: K's).
+    stack: see `OrderedMatrix.schur_complement`.
     Raises NotPositiveDefinite and OutOfMemory.
 
     >>> springs = sp.csr_matrix([[2.0, -1.0], [-1.0, 2.0]])
@@ -57,7 +59,7 @@ def compliance(
     """
     count, kept = functionals.shape[0], np.arange(stiffness.shape[0]) if free is None else free
     nothing = sp.coo_matrix((count, count))
-    result = _ordered(stiffness, functionals, kept, kept[:0], nothing, settings, graph).schur_complement()
+    result = _ordered(stiffness, functionals, kept, kept[:0], nothing, settings, graph).schur_complement(stack=stack)
     return np.negative(result, out=result)
 
 

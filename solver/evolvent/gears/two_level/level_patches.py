@@ -17,6 +17,7 @@ from scipy.interpolate import BarycentricInterpolator
 
 from evolvent.contact.two_level.fine_surface import CoarseBody, FineSurface
 from evolvent.contact.two_level.patch_response import patch_response
+from evolvent.fem.parallel.memory import Stack
 from evolvent.fem.surface import Surface
 from evolvent.gears.two_level.coarse_axis import Axis
 from evolvent.gears.two_level.flank_lattice import FlankLattice
@@ -202,15 +203,17 @@ class LevelPatches:
             change = np.sum([weight * each.change for weight, each in zip(weights, known)], axis=0)
             yield row, replace(known[0], change=change)
 
-    def response(self, loaded: LoadedPatch) -> BlockResponse:
-        """Response of one of the `patches`. Raises NotPositiveDefinite, OutOfMemory."""
+    def response(self, loaded: LoadedPatch, stack: Stack | None = None) -> BlockResponse:
+        """Response of one of the `patches`; stack: see `patch_response`. Raises NotPositiveDefinite, OutOfMemory."""
         low, high = self._loaded_nodes(loaded.block)
 
         def within(points: Floats) -> Bools:
             at = self._fine.place(points)
             return np.asarray((at >= low).all(axis=1) & (at < high).all(axis=1))
 
-        found = patch_response(self._body, loaded.patch, self._held, self._flux_safety, within, self._flux_reach)
+        found = patch_response(
+            self._body, loaded.patch, self._held, self._flux_safety, within, self._flux_reach, stack
+        )
 
         def framed(change: Floats) -> Response:
             return self._framed(loaded.block, found.points, found.loaded, change)

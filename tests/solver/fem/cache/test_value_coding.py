@@ -44,7 +44,7 @@ def test_values_come_back() -> None:
     ones come back as plain ones of the same value."""
     random = np.random.default_rng(0)
     one, two = inner(random), inner(random)
-    value = Outer((one, two), {"a": np.arange(3)}, np.float64(0.1) / 3.0, two)
+    value = Outer((one, two), {"a": np.arange(3)}, float(np.float64(0.1)) / 3.0, two)
     found = decoded(coded(value, Outer), Outer)
     assert found.size == value.size and found.other is not None
     for own, other in zip((*found.inner, found.other), (one, two, two)):

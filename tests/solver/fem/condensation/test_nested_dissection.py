@@ -8,6 +8,7 @@ import scipy.sparse as sp
 
 from evolvent.fem.condensation.nested_dissection import DissectionSettings
 from evolvent.fem.condensation.schur_complement import compliance
+from evolvent.fem.parallel.memory import Stack
 from tests.support.q1_elasticity import block
 
 
@@ -19,6 +20,16 @@ def test_compliance_does_not_depend_on_the_leaf_size(leaf: int) -> None:
     C = compliance(matrix, functionals, free=free, settings=DissectionSettings(leaf=leaf))
     assert np.abs(C - exact).max() < 1e-13 * np.abs(exact).max()
     assert np.array_equal(C, C.T)
+
+
+def test_eliminations_use_the_same_memory() -> None:
+    """A block, a smaller one and the first again on one stack, whose memory is full of the last one's numbers: as on
+    memory of their own. Exact."""
+    stack, settings = Stack(), DissectionSettings(leaf=100)
+    for cells in ((9, 6, 6), (5, 4, 4), (9, 6, 6)):
+        matrix, free, functionals = block(cells)
+        own = compliance(matrix, functionals, free, settings)
+        assert np.array_equal(compliance(matrix, functionals, free, settings, stack=stack), own)
 
 
 def test_dissection_of_separate_bodies() -> None:

@@ -16,7 +16,7 @@ class Axis:
 
     below: of each cell, how many lie within reach on the side of the first one.
     above: of each, how many on the side of the last one.
-    samples: how many between those near the ends have a patch of their own.
+    samples: how many between those near the ends are sampled, and not interpolated between others.
     """
 
     below: tuple[int, ...]
@@ -62,9 +62,20 @@ class Axis:
         return range(blocks[0].stop, blocks[-1].start)
 
     @property
+    def loaded(self) -> list[range]:
+        """Blocks of cells that are loaded in one patch each: those near the ends, with the sampled cell beside them,
+        whose own patch would be hardly smaller; the other sampled cells one by one."""
+        blocks, samples = self.own, self.sampled
+        if samples and samples[0] == blocks[0].stop:
+            blocks[0] = range(blocks[0].start, samples.pop(0) + 1)
+        if samples and samples[-1] == blocks[-1].start - 1:
+            blocks[-1] = range(samples.pop(), blocks[-1].stop)
+        return [*blocks, *(range(i, i + 1) for i in samples)]
+
+    @property
     def sampled(self) -> list[int]:
-        """Cells between the blocks that have a patch of their own: the middle one, or several, closer towards both
-        ends, as a polynomial through them needs it (Chebyshev)."""
+        """Cells between the blocks whose response stands for the others: that of the middle one, or of several, closer
+        towards both ends, as a polynomial through them needs it (Chebyshev)."""
         cells = self.between
         if self.samples == 1 or len(cells) < 2:
             return [cells[len(cells) // 2]] if cells else []

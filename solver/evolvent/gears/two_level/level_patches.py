@@ -37,10 +37,12 @@ reference helix angles from 35° to 37°, all peaks, with 1.1 and 1.6: 2.6, 1.3,
 NEGLIGIBLE = 5e-3
 """Nodes at a patch's rim that move by less than this fraction of the largest displacement are left out."""
 SAMPLES = 4
-"""Rows between those near root and tip that have a patch of their own. Largest error of a correction, of its largest
-entry, with three, four, five (Yang's pinion, at the ends of its face, where it is largest): 2.8, 1.0, 0.7 %."""
+"""Rows between those near root and tip whose response is computed, not interpolated. Largest error of a correction, of
+its largest entry, with three, four, five (Yang's pinion, at the ends of its face, where it is largest): 2.8, 1.0, 0.7 %.
+"""
 COST = 1.5
-"""Power of the number of a patch's fine cells with which its time grows: 0.6 s for 530, 2.9 s for 1,330."""
+"""Power of the number of a patch's fine cells with which its time grows, with Nitsche's functionals or without: 0.4 to
+0.6 s for 680 cells, 1.6 to 2.8 s for 1,200."""
 
 Block = tuple[range, range]
 """Rows and layers of coarse cells that are loaded in one patch."""
@@ -169,15 +171,14 @@ class LevelPatches:
     def patches(self) -> list[LoadedPatch]:
         """All patches that `correction` needs."""
         profile, face = self.axes
-        rows, layers = ([*axis.own, *(range(i, i + 1) for i in axis.sampled)] for axis in (profile, face))
-        return [self._patch((each, those)) for those in layers for each in rows]
+        layers = [*face.own, *(range(i, i + 1) for i in face.sampled)]
+        return [self._patch((rows, those)) for those in layers for rows in profile.loaded]
 
     def _patch(self, block: Block) -> LoadedPatch:
         loaded = np.isin(self._cells[:, 0], block[0]) & np.isin(self._cells[:, 1], block[1])
         patch = self._body.near(np.flatnonzero(loaded), self._reach)
         cells = float(self._body.counts[patch.cells].prod(axis=1).sum())
-        twice = 1.0 if self._flux_safety is None else 2.0  # what the functionals change takes as long as the rest
-        return LoadedPatch(block, patch, twice * cells**COST)
+        return LoadedPatch(block, patch, cells**COST)
 
     def correction(self, responses: Mapping[Block, Response]) -> StripCorrection:
         """Correction from the `response` of each of the `patches`, all plain or all of Nitsche's functionals."""
@@ -195,13 +196,31 @@ class LevelPatches:
     def _along_profile(self, layers: range, responses: Mapping[Block, Response]) -> Iterator[tuple[int, Response]]:
         """The responses to loads on each row of coarse cells in some layers."""
         profile, _ = self.axes
-        for block in profile.own:
-            yield from zip(block, responses[block, layers].by_row(int(self._nodes[0]), len(block)))
-        known = [responses[range(row, row + 1), layers] for row in profile.sampled]
+        known = []
+        for block in sorted(profile.loaded, key=lambda block: block.start):
+            for row, each in zip(block, responses[block, layers].by_row(int(self._nodes[0]), len(block))):
+                if row in profile.between:
+                    known.append(self._alike(each, row))
+                else:
+                    yield row, each
         for row in profile.between:
             weights = BarycentricInterpolator(profile.sampled, np.eye(len(known)))(row)
             change = np.sum([weight * each.change for weight, each in zip(weights, known)], axis=0)
             yield row, replace(known[0], change=change)
+
+    def _alike(self, response: Response, row: int) -> Response:
+        """Response to the loads on a row between the blocks, in its own frame and on as many rows of nodes about it as
+        those of all such rows have."""
+        profile, _ = self.axes
+        below, above = self._nodes[0] * np.array(profile.extent(profile.between))
+        P, _, _, p, *_ = response.change.shape
+        low = int(response.before[0] - below)
+        high = low + int(below + p + above) + 1
+        change = np.zeros((high - low, *response.change.shape[1:]), dtype=np.float32)
+        change[max(-low, 0) : P - low] = response.change[max(low, 0) : high]
+        R = turn(self._normal_angle(row - int(response.offset[0])) - self._normal_angle(row), 3).astype(np.float32)
+        change = np.einsum("ba,PQbpqc,ce->PQapqe", R, change, R, optimize=True)
+        return Response(change, np.array([below, response.before[1]]), response.offset * np.array([0, 1]))
 
     def response(self, loaded: LoadedPatch, stack: Stack | None = None) -> BlockResponse:
         """Response of one of the `patches`; stack: see `patch_response`. Raises NotPositiveDefinite, OutOfMemory."""
@@ -227,14 +246,16 @@ class LevelPatches:
         low, high = self._loaded_nodes(block)
         last = np.array(self._fine.nodes.shape) - 1
         # patches between the blocks have one shape, so that they can be interpolated
-        alike = (axis.between if cells[0] in axis.between else cells for axis, cells in zip(self.axes, block))
+        both = zip(self.axes, block)
+        alike = (axis.between if {*cells} <= {*axis.between} else cells for axis, cells in both)
         below, above = self._nodes * np.transpose([axis.extent(each) for axis, each in zip(self.axes, alike)])
         start, stop = np.maximum(0, low - below), np.minimum(last, high + above) + 1
         at = self._fine.place(points)
         moves = (at >= start).all(axis=1) & (at < stop).all(axis=1)
         R = turn(self._angle[low[1]] - self._normal_angle(block[0].start), 3)
-        turned_change = np.einsum("ba,ibjc,ce->iaje", R, change[moves], R, optimize=True)
-        result = np.zeros((*(stop - start), 3, *(high - low), 3), dtype=np.float32)  # as strips are in the end
+        R, single = R.astype(np.float32), change[moves].astype(np.float32)  # as strips are in the end
+        turned_change = np.einsum("ba,ibjc,ce->iaje", R, single, R, optimize=True)
+        result = np.zeros((*(stop - start), 3, *(high - low), 3), dtype=np.float32)
         i, j = at[moves] - start, at[loaded] - low
         result[i[:, 0, None], i[:, 1, None], :, j[:, 0], j[:, 1]] = np.moveaxis(turned_change, 1, 2)
         return Response(result, low - start, np.zeros(2, dtype=np.int64))

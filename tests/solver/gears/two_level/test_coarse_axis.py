@@ -39,3 +39,14 @@ def test_patches_between_the_blocks_fit_on_the_flank() -> None:
     ones have four below. Exact."""
     axis = along(8 * [1.0] + 12 * [0.3], 1.1, 3)
     assert axis.extent(axis.between) == (4, 4) and axis.own == [range(4), range(15, 20)]
+
+
+def test_sampled_cells_beside_the_blocks_share_their_patches() -> None:
+    """Twenty cells of which 3, 6, 13 and 16 are sampled: 3 and 16 are loaded with the three beside them at each end.
+    The middle layer is beside no block. Of two cells between the blocks each goes to one. Exact."""
+    rows, layers, few = along(20 * [1.0], 1.1, 4), along(20 * [1.0], 1.1, 1), along(8 * [1.0], 1.1, 4)
+    assert rows.loaded == [range(4), range(16, 20), range(6, 7), range(13, 14)]
+    assert layers.loaded == [range(3), range(17, 20), range(10, 11)]
+    assert few.loaded == [range(8)]
+    two = along(8 * [1.0], 1.1, 2)
+    assert two.own == [range(3), range(5, 8)] and two.loaded == [range(4), range(4, 8)]

@@ -18,6 +18,7 @@ from functools import cache
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from evolvent_meshes.arrays import Ints
 
@@ -84,7 +85,8 @@ def _dissect(compressed: CompressedGraph, numbers: Ints, leaf: int, begin: int) 
     """Elimination order of the vertices called `numbers` (v,), and their tree, whose rows start at `begin`."""
     end = begin + int(compressed.weights.sum())
     if end - begin <= leaf:
-        return numbers, SeparatorTree(begin, end, end)
+        # MUMPS' minimum degree breaks ties in the order it is given: a third fewer operations
+        return numbers[reverse_cuthill_mckee(compressed.graph, symmetric_mode=True)], SeparatorTree(begin, end, end)
     side, orders, children = bisect(compressed), [], []
     start = begin
     for vertices in (np.flatnonzero(side == FIRST), np.flatnonzero(side == SECOND)):

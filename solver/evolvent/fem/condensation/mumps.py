@@ -102,10 +102,20 @@ def schur_complement(upper: sp.spmatrix, size: int, settings: FactorSettings = D
     return complement
 
 
+def upper_triangle(matrix: sp.csr_matrix) -> sp.csr_matrix:
+    """Upper triangle of a matrix (n × n or wider); column indices stay in their order, negative ones are left out.
+
+    SciPy's `triu` takes several times longer.
+    """
+    rows = np.repeat(np.arange(matrix.shape[0], dtype=matrix.indices.dtype), np.diff(matrix.indptr))
+    kept = matrix.indices >= rows
+    ends = np.concatenate([[0], np.cumsum(kept, dtype=matrix.indptr.dtype)])[matrix.indptr]
+    return sp.csr_matrix((matrix.data[kept], matrix.indices[kept], ends), shape=matrix.shape)
+
+
 def symmetric_matrix(upper: sp.spmatrix) -> PETSc.Mat:
     """PETSc matrix (SBAIJ, marked positive definite) from the upper triangle (n × n) of a symmetric matrix."""
-    csr = upper.tocsr()
-    csr.sort_indices()
+    csr = upper.tocsc().tocsr()  # sorts the indices, in half the time of `sort_indices`
     arrays = (csr.indptr.astype(np.int32), csr.indices.astype(np.int32), csr.data)
     matrix = PETSc.Mat().createSBAIJ(csr.shape, 1, csr=arrays, comm=PETSc.COMM_SELF)
     # MUMPS' SYM = 1: no pivoting, and INFOG(12) counts the negative pivots

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from evolvent.fem.condensation.mumps import NotPositiveDefinite, OutOfMemory, SparseCholesky
+from evolvent.fem.condensation.mumps import NotPositiveDefinite, OutOfMemory, SparseCholesky, upper_triangle
 from evolvent.fem.condensation.nested_dissection import DEFAULT_DISSECTION, DissectionSettings, OrderedMatrix
 from evolvent.fem.parallel.cores import Threads
 from evolvent.fem.parallel.memory import Stack
@@ -75,7 +75,7 @@ class Factor:
     ) -> None:
         self._free: Ints | slice = slice(None) if free is None else free
         kept = stiffness if free is None else _restricted(stiffness, free, free)
-        self._cholesky = SparseCholesky(sp.triu(kept, format="csr"), settings.factor)
+        self._cholesky = SparseCholesky(upper_triangle(kept.tocsr()), settings.factor)
 
     def solve(self, right: Floats) -> Floats:
         """X with K X = `right` on the free rows and 0 on the fixed ones; both (n,) or (n × c)."""

@@ -28,7 +28,8 @@ from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.full_gear import whole_mesh, whole_system
 from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.meshing.root_meshes import root_nodes
-from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Compliance
+from evolvent.gears.ring.chain_settings import ChainSettings
+from evolvent.gears.ring.ring_compliance import ChainedCompliance, Compliance
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member

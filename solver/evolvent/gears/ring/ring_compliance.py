@@ -26,18 +26,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Protocol
 
 import numpy as np
-import scipy.sparse as sp
 
 from evolvent.contact.newton.applied_compliance import SurfaceCompliance
 from evolvent.fem.condensation.schur_complement import SectorCondensation
+from evolvent.gears.ring.chain_settings import ChainSettings
 from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_modes import Coupling, coupling
 from evolvent.gears.ring.ring_window import RingWindow
-from evolvent.gears.ring.sector_interfaces import ClosedRing
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.rotation import turn
 
@@ -96,34 +94,6 @@ class Compliance(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class ChainSettings:
-    """The teeth that rows may name, of a ring of 2π/pitch sectors.
-
-    pitch: angle of a sector [rad].
-    count: number of teeth.
-    first: number of the lowest tooth; tooth s is tooth 0 turned by +s pitches.
-    dimension: of space, d.
-    tolerance: relative error (Frobenius) of the coupling T G Tᵀ; 1e-13 is rounding.
-
-    Raises ValueError where the sectors cannot be closed.
-    """
-
-    pitch: float
-    count: int
-    first: int = 0
-    dimension: int = 3
-    tolerance: float = 1e-13
-
-    def __post_init__(self) -> None:
-        sectors = 2 * np.pi / self.pitch
-        if abs(sectors - round(sectors)) > 1e-9 * sectors or self.count > round(sectors):
-            raise ValueError(
-                f"closed ring of sectors: wanted a pitch that divides the circle and no more teeth than it has, found "
-                f"a pitch of {self.pitch} rad ({sectors:.6f} to the circle) and {self.count} teeth; correct them"
-            )
-
-
 @dataclass(frozen=True, eq=False)
 class ChainedCompliance:
     """Compliance of a gear of equal sectors: one sector's C, which all share, and the coupling through interfaces."""
@@ -139,9 +109,8 @@ class ChainedCompliance:
     def of(sector: SectorCondensation, settings: ChainSettings) -> ChainedCompliance:
         """Closes a sector to the ring. Raises ValueError where the compliance has no whole nodes."""
         _require_nodes(sector.compliance, settings.dimension)
-        frames = _frames_of_faces(len(sector.stiffness), settings)
-        joined = partial(_joined, settings=settings)
-        return ChainedCompliance(sector, coupling(sector, frames, joined, settings.tolerance), settings)
+        frames = settings.frames_of_faces(len(sector.stiffness))
+        return ChainedCompliance(sector, coupling(sector, frames, settings.joined, settings.tolerance), settings)
 
     @property
     def dimension(self) -> int:
@@ -215,12 +184,12 @@ class ChainedCompliance:
     def cut_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
         """Displacements (2c: low, high face; sector's own frame; mm) of each tooth's cut faces under `forces`
         (k_in, d; N), or (n, 2c) under (n, k_in, d), for `SectorRecovery`. Exact, whatever the tolerance."""
-        frames = _frames_of_faces(len(self.sector.stiffness), self.settings)
+        frames = self.settings.frames_of_faces(len(self.sector.stiffness))
         sources = {
             self._place(tooth): frames.T @ (values @ self.sector.transfer[dofs]).T
             for tooth, (dofs, values, _) in self._loads(rows_in, forces).items()
         }
-        low_faces = _joined(frames.T @ self.sector.stiffness @ frames, self.settings).displacements(sources)
+        low_faces = self.settings.joined(frames.T @ self.sector.stiffness @ frames).displacements(sources)
         # the ring has more sectors than the named teeth
         return {tooth: (frames @ np.concatenate(low_faces[i : i + 2])).T for i, tooth in enumerate(self.teeth)}
 
@@ -280,19 +249,6 @@ class ChainedCompliance:
         """Compliance of the sector between some nodes, in its own frame."""
         dofs = _dofs(nodes, self.dimension)
         return self.sector.compliance[np.ix_(dofs, dofs)]
-
-
-def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
-    """Matrix from face displacements (2c = `size`: low; high in the frame of the next sector) to those in the sector's
-    own."""
-    next_frame = turn(settings.pitch, settings.dimension)
-    low, high = sp.eye(size // 2), sp.kron(sp.eye(size // 2 // settings.dimension), next_frame)
-    return sp.csr_array(sp.block_diag([low, high]))
-
-
-def _joined(stiffness: Floats, settings: ChainSettings) -> ClosedRing:
-    """The ring of sectors whose faces have this stiffness (2c × 2c)."""
-    return ClosedRing(stiffness, round(2 * np.pi / settings.pitch), settings.count)
 
 
 def _dofs(nodes: Ints, dimension: int) -> Ints:

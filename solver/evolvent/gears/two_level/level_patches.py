@@ -38,8 +38,8 @@ NEGLIGIBLE = 5e-3
 """Nodes at a patch's rim that move by less than this fraction of the largest displacement are left out."""
 SAMPLES = 4
 """Rows between those near root and tip whose response is computed, not interpolated. Largest error of a correction, of
-its largest entry, with three, four, five (Yang's pinion, at the ends of its face, where it is largest): 2.8, 1.0, 0.7 %.
-"""
+its largest entry, with three, four, five (Yang's pinion, at the ends of its face, where it is largest): 2.8, 1.0 and
+0.7 %."""
 COST = 1.5
 """Power of the number of a patch's fine cells with which its time grows, with Nitsche's functionals or without: 0.4 to
 0.6 s for 680 cells, 1.6 to 2.8 s for 1,200."""

@@ -14,8 +14,9 @@ from evolvent.fem.condensation.schur_complement import (
     SectorSystem,
     compliance,
 )
+from evolvent.gears.ring.chain_settings import ChainSettings
 from evolvent.gears.ring.jump_map import JumpMap
-from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, MappedNodes
+from evolvent.gears.ring.ring_compliance import ChainedCompliance, MappedNodes
 from evolvent_meshes.arrays import Floats, Ints
 from tests.support.q1_elasticity import Ring, ring
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from evidence import mutations
 from evidence.benchmarks.accuracy import face_load, transient_bar_costs, transient_bars
+from evidence.benchmarks.cache import kept, modifications
 from evidence.benchmarks.line import accuracy, edges, face_ends, friction, starts
 from evidence.checkout import ROOT
 from evidence.pages import abilities, blow, outputs, promises, readme, tutorial
@@ -49,6 +50,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "checks.md": {"repeats": repeats.said(docs)},
         docs / "evidence.md": {"bars": bars, "face-load": face_load.table(docs)},
         docs / "edges.md": {"seen": mutations.table(root)},
+        docs / "cache.md": {"kept": kept.said(docs), "modifications": modifications.said(docs)},
         docs / "line_contact.md": {
             "face-ends": face_ends.said(docs), "accuracy": accuracy.said(docs),
             "beyond": accuracy.beyond(docs), "friction": friction.said(docs),

@@ -138,7 +138,7 @@ def test_packages_are_used() -> None:
     """Each Python package of packages/debian.txt is imported somewhere, but for what sets the environment up."""
     sets_up = {"venv", "setuptools", "wheel", "pytest-xdist"}  # setuptools before 70 builds with wheel
     sets_up |= {"dask"}  # `python -m dask` of docs/studies.md, which a test runs
-    modules = {"dolfinx-real": "dolfinx", "petsc4py-real": "petsc4py", "pil": "PIL"}
+    modules = {"dolfinx-real": "dolfinx", "petsc4py-real": "petsc4py", "pil": "PIL", "cattr": "cattrs"}
     lines = (ROOT / "packages" / "debian.txt").read_text(encoding="utf-8").splitlines()
     wanted = {line.split()[0].removeprefix("python3-") for line in lines if line.startswith("python3-")} - sets_up
     files = [path for name in ("meshes", "solver", "wear", "evidence", "tests") for path in (ROOT / name).rglob("*.py")]

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evidence.benchmarks.line.measuring import keep_rows
+from evidence.benchmarks.measuring import keep_rows
 from evidence.tables import Column, Table
 from evolvent.fem.body import Body, assemble
 from evolvent.fem.boundary import Fixed

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from evidence.benchmarks.line.measuring import keep_rows
 from evidence.benchmarks.line.pairs import ALL
+from evidence.benchmarks.measuring import keep_rows
 from evidence.tables import Column, Table
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.line.line_sweep import line_sweep

@@ -12,8 +12,8 @@ from unittest.mock import patch
 
 import numpy as np
 
-from evidence.benchmarks.line.measuring import keep_rows
 from evidence.benchmarks.line.pairs import Case, case, relieved
+from evidence.benchmarks.measuring import keep_rows
 from evidence.scenes import HELICAL, SPUR
 from evidence.tables import Column, Table
 from evolvent.dynamics.excitation.loaded_mesh import searched_positions, under_torques

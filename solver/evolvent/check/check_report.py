@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from pathlib import Path
 
+from evolvent.check.cache_size import kept_megabytes
 from evolvent.check.form_rows import gear_lines, pair_lines
 from evolvent.check.planned_tables import planned_tables
 from evolvent.check.problem_size import (
@@ -231,6 +232,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
         Row("largest memory of a run on one rank, estimated", "", "", (gigabytes(memory_megabytes(scene)),)),
         *(roots if rooted else []),
         Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
+        Row("condensed gears in the cache, estimated", "", "", (gigabytes(kept_megabytes(problem)),)),
         Row("tooth pairs that can touch", "", "", (str(len(problem.touching_teeth)),)),
         Row(name, "", "", (str(problem.pitches * scene.sweep.positions),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),

@@ -30,7 +30,7 @@ class MeshedSector:
     mesh: SectorMesh
     """Mesh of the sector, the flank of one mesh with its modifications."""
     bare: MeshData | None
-    """The same cells without modifications; None: those of `mesh`."""
+    """Cells of `mesh` on a flank without modifications, which are condensed; None: `mesh` is."""
 
     @staticmethod
     def as_meshed(problem: GearProblem, member: Member, mesh: Mesher) -> MeshedSector:

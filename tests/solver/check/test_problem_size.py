@@ -121,7 +121,7 @@ TETRAHEDRA, ELEMENTS = "mesh.shape=tetrahedron", "mesh.elements_per_contact_widt
     ("settings", "megabytes", "key", "remedy"),
     [
         ([TETRAHEDRA, "mesh.level=fine"], 25e3, "mesh.level", "take --level standard (12 GB)"),
-        ([TETRAHEDRA, "mesh.level=fine"], 8e3, "mesh.level", "take --level quick (3.08 GB)"),
+        ([TETRAHEDRA, "mesh.level=fine"], 8e3, "mesh.level", "take --level quick (3.26 GB)"),
         ([TETRAHEDRA, "mesh.level=standard"], 2e3, "mesh.level", "quick --set mesh.elements_per_contact_width=1.3"),
         ([TETRAHEDRA, "mesh.elements_per_contact_width=12"], 25e3, ELEMENTS, "per_contact_width=3."),
         (["mesh.level=fine"], 3e3, "mesh.level", "take --level standard ("),

@@ -42,9 +42,9 @@ class Entry:
     """A kept value."""
 
     path: Path
-    """Its file."""
+    """File of the value."""
     about: str
-    """What it is, in words."""
+    """Description of the value."""
     size: int
     """Bytes of the file."""
     used: float

@@ -78,7 +78,7 @@ def read_value(path: Path) -> CodedValue:
 
 
 def read_about(path: Path) -> dict[str, Any]:
-    """What is said about the value of a file. Raises OSError, DamagedFile."""
+    """Description of the value of a file. Raises OSError, DamagedFile."""
     with open_file(path) as file:
         head = file.read(FIRST_LINE)
         try:

@@ -139,10 +139,12 @@ def _below_flank(problem: GearProblem, depths: Floats, module: float) -> SectorR
 
 
 def mesh_estimate(problem: GearProblem) -> HertzEstimate:
-    """Hertz contact under the torque of a problem, rounded to a power of `TORQUE_STEP`."""
+    """Hertz contact under the torque of a problem, rounded so that (b_H/m_n)² at the pitch point, which grows with the
+    torque, is a power of `TORQUE_STEP`."""
     estimate = problem.hertz_estimate
-    steps = round(math.log(estimate.pinion_torque) / math.log(TORQUE_STEP))
-    return replace(estimate, pinion_torque=TORQUE_STEP**steps)
+    relative_width = float(estimate.half_width(0.0)) / problem.pair.pinion.normal_module
+    steps = math.log(relative_width**2) / math.log(TORQUE_STEP)
+    return replace(estimate, pinion_torque=TORQUE_STEP ** (round(steps) - steps) * estimate.pinion_torque)
 
 
 def flank_needs(problem: GearProblem, member: Member, levels: bool = False) -> FlankNeeds:

@@ -1,4 +1,4 @@
-"""Command line of a benchmark of line contact: the rows of its table, kept as soon as they are there."""
+"""Command line of a benchmark: the rows of its table, kept as soon as they are there."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 
 def keep_rows(
-    description: str | None, small: str, name: str, rows: Callable[[bool], Iterable[DataclassInstance]]
+    description: str | None, small: str, name: str, rows: Callable[[bool], Iterable[DataclassInstance]],
+    folder: str = "line_contact",
 ) -> None:
-    """Measures the rows of docs/line_contact/NAME.csv. small: what the option --small measures, in words. rows: of the
+    """Measures the rows of docs/FOLDER/NAME.csv. small: what the option --small measures, in words. rows: of the
     whole table, or of a small part where its argument is true."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--small", action="store_true", help=small)
@@ -27,4 +28,4 @@ def keep_rows(
     for row in rows(given.small):
         kept.append(row)
         print(row, flush=True)
-        write_rows(given.out / "line_contact" / f"{name}.csv", kept)
+        write_rows(given.out / folder / f"{name}.csv", kept)

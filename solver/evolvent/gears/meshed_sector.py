@@ -46,7 +46,8 @@ class MeshedSector:
             return MeshedSector(made, None)
         gears = tuple(map(unmodified, problem.pair.gears))
         pair = replace(problem.pair, pinion=gears[Member.PINION], wheel=gears[Member.WHEEL])
-        bare = mesh(replace(problem, pair=pair), member)
+        options = replace(problem.options, in_space=not problem.is_plane)  # also where crowning alone makes it so
+        bare = mesh(replace(problem, pair=pair, options=options), member)
         if isinstance(bare, MeshData) and bare.points.shape == made.points.shape:
             return MeshedSector(made, bare)
         return MeshedSector(made, None)

@@ -25,8 +25,8 @@ PACKAGES = (evolvent, evolvent_meshes)
 NOT_REPORTED = {
     "evolvent.run.stopping.Stopped", "evolvent_meshes.files.NoFile", "evolvent.fem.cache.value_files.DamagedFile",
 }
-"""A signal, which is a KeyboardInterrupt, an OSError that every reader turns into an error of its own, and a damaged file
-of the cache, which is made again."""
+"""A signal, which is a KeyboardInterrupt, an OSError that every reader turns into an error of its own, and a
+file of the cache that is damaged, which is made again."""
 STATUSES = {
     NotConverged: 3, SearchError: 3, BalanceError: 3, PitchImbalance: 3, MeshError: 2, NotPositiveDefinite: 2,
     OutOfMemory: 1, CompileError: 1,

@@ -27,6 +27,7 @@ from tests.support.running.processes import RunScript
 
 RELIEF = "pinion.tip_relief_um=15", "wheel.tip_relief_um=25"
 IN_SPACE = "pinion.lead_crowning_um=4", "pair.misalignment_um=12"
+CROWNED = "pinion.lead_crowning_um=5", "mesh.level=quick", "mesh.order=1", "mesh.elements_per_contact_width=0.5"
 CHANGED = *RELIEF, "contact.friction=0.2"
 """What differs between two calls, beside a torque that is a tenth larger, and crowning and misalignment in space."""
 
@@ -34,6 +35,11 @@ CHANGED = *RELIEF, "contact.friction=0.2"
 def plane(*settings: str) -> tuple[Scene, Mesher]:
     """He's pair in plane strain."""
     return spur_scene("mesh.level=quick", *settings), run_mesh
+
+
+def crowned(*settings: str) -> tuple[Scene, Mesher]:
+    """He's pair in space, as its pinion is crowned; cells of order 1."""
+    return spur_scene(*CROWNED, *settings), run_mesh
 
 
 def one_mesh(*settings: str) -> tuple[Scene, Mesher]:
@@ -79,7 +85,8 @@ def nothing_condensed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "changed"), [(plane, CHANGED), (one_mesh, (*CHANGED, *IN_SPACE)), (in_levels, (*CHANGED, *IN_SPACE))]
+    ("make", "changed"),
+    [(plane, CHANGED), (crowned, CHANGED), (one_mesh, (*CHANGED, *IN_SPACE)), (in_levels, (*CHANGED, *IN_SPACE))],
 )
 def test_a_second_call_condenses_nothing(
     make: Any, changed: tuple[str, ...], kept: Cache, monkeypatch: pytest.MonkeyPatch

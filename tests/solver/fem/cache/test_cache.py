@@ -59,7 +59,7 @@ def test_a_value_is_made_once(cache: Cache) -> None:
     for number, by in ((1, cache), (1, Cache(cache.size_GB)), (2, cache), (1, cache)):
         assert np.array_equal(kept(by, number, calls).array, made(number).array)
     assert calls == [1, 2]
-    assert [each.about for each in cache.entries()] == ["value 1", "value 2"]
+    assert {each.about for each in cache.entries()} == {"value 1", "value 2"}
 
 
 def test_a_value_of_another_program_is_not_used(cache: Cache, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,8 +4,9 @@
     header   {"about": {...}, "value": "...", "arrays": [[dtype, shape, order, start], ...]}
     arrays   each from a multiple of 64 bytes on
 
-A file is written under another name and renamed. A reader that has mapped one keeps what it has mapped, whatever
-becomes of the name.
+A file is written under another name and renamed; it is not flushed to the disk, which takes as long as condensing small
+gears: the checksum tells where a machine has stopped before it was. A reader that has mapped a file keeps what it has
+mapped, whatever becomes of the name.
 """
 
 from __future__ import annotations
@@ -50,8 +51,6 @@ def write_value(path: Path, value: CodedValue, about: dict[str, Any]) -> int:
                 size += file.write(piece)
             file.seek(0)
             file.write(_first_line(check, header))
-            file.flush()
-            os.fsync(file.fileno())
         os.replace(part, path)
     finally:
         with suppress(OSError):  # it was renamed

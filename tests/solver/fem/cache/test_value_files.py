@@ -86,12 +86,12 @@ def test_objects_are_refused(tmp_path: Path) -> None:
 
 
 def test_no_part_is_left_where_the_disk_is_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Flushing fails as on a full disk: the error, and neither file nor part of it."""
+    """Writing an array fails as on a full disk: the error, and neither file nor part of it."""
 
-    def full(_: int) -> None:
+    def full(*_: object) -> int:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(value_files.os, "fsync", full)
+    monkeypatch.setattr(value_files.zlib, "crc32", full)
     with pytest.raises(OSError, match="No space left"):
         write_value(tmp_path / "one.values", VALUE, {})
     assert not list(tmp_path.iterdir())

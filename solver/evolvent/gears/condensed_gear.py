@@ -131,7 +131,9 @@ def condensed_gear(
         nonlocal assembled
         system = _sector_system(sector_body(mesh, material, member), flank, traction, pitch)
         assembled = time.perf_counter()
-        return ChainedCompliance.of(system.condensed(threads), settings)
+        sector = system.condensed(threads)
+        del system  # gigabytes at the fine end
+        return ChainedCompliance.of(sector, settings)
 
     if whole:
         ring = whole_mesh(mesh, matching_cuts(mesh, pitch), gear.z)

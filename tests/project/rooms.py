@@ -119,7 +119,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.modes": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem.parallel", "fem", "fem.condensation",
-        "contact.nitsche", "gears.problem", "gears.meshing", "gears.two_level", "gears", "dynamics",
+        "fem.cache", "contact.nitsche", "gears.problem", "gears.meshing", "gears.two_level", "gears", "dynamics",
     ),
     "dynamics.transient": (
         "meshes", "meshes.gears", "fem.parallel", "contact.newton", "contact.transient.time_schemes", "gears.problem",

@@ -69,6 +69,14 @@ class GearBody:
     """Levels by which the flank is finer than the mesh, which then has no flank modifications either; none: its nodes
     are the mesh's."""
 
+    bare: MeshData | None = None
+    """Mesh that was condensed: the cells of `mesh` on a flank without modifications; None: `mesh` was."""
+
+    @property
+    def condensed_mesh(self) -> MeshData:
+        """Mesh that the compliance is of."""
+        return self.mesh if self.bare is None else self.bare
+
     def lost(self, facets: Ints, xi: Floats) -> Floats:
         """Worn depth (q,) [mm] at xi (q, d−1) of the flank's facets (q,)."""
         return np.zeros(len(facets)) if self.worn is None else self.flank.hat_matrix(facets, xi) @ self.worn

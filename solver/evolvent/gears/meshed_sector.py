@@ -61,4 +61,6 @@ class MeshedSector:
             member, member is Member.PINION and not problem.is_line, whole=problem.options.whole_gears,
             threads=threads, cache=cache,
         )
-        return body if self.bare is None else replace(body, mesh=self.mesh, flank=surface_of(self.mesh, "flank"))
+        if self.bare is None:
+            return body
+        return replace(body, mesh=self.mesh, bare=self.bare, flank=surface_of(self.mesh, "flank"))

@@ -9,18 +9,20 @@ import numpy as np
 import scipy.sparse as sp
 
 from evolvent.contact.nitsche.flux_recovery import NitscheTraction
-from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces, Numbers
+from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces
 from evolvent.dynamics.modes.ring_modes import RingModes, SectorMatrices, harmonics, modes_below, ring_modes
 from evolvent.fem.body import Body
+from evolvent.fem.cache.cache import Cache
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.fem.mass_matrix import mass_matrix
 from evolvent.fem.parallel.memory import return_free_memory
 from evolvent.fem.surface import Surface, surface_of
-from evolvent.gears.condensed_gear import GearBody, SectorParts, sector_body, sector_parts
+from evolvent.gears.condensed_gear import GearBody, SectorParts, in_words, sector_body, sector_parts
 from evolvent.gears.kinematics import spin
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.mesh_digest import mesh_digest
 from evolvent_meshes.rotation import turn
 
 
@@ -95,16 +97,21 @@ def gear_modes(
 
     Raises NotPositiveDefinite, OutOfMemory, CompileError, CacheError.
     """
-    sector, traction, to_flank = body.mesh, body.traction, None
+    sector, traction, to_flank = body.condensed_mesh, body.traction, None
     if mesh is not None:
         # traction-free there: the modes' own flux on a coarse flank is nothing but its error
         sector, traction, to_flank = mesh, None, FlankLattice.of(surface_of(mesh, "flank").points)
-    found, moment, spun, functionals = _on_mesh(body, sector, traction, choice, computed)
+    stabiliser = "" if traction is None else f"{traction.stabiliser.mean():.6e}"  # whatever the order of its sums
+    inputs = "modes", mesh_digest(sector), body.material, choice, body.gear.z, stabiliser
+    found = Cache.of_environment().kept(
+        f"natural modes, {in_words(body.gear)}", inputs, GearModes,
+        lambda: _on_mesh(body, sector, traction, choice, computed),
+    )
     return_free_memory()  # of the factors, gigabytes; time steps want less at once
-    if to_flank is not None:
-        across = sp.kron(to_flank.interpolation(body.flank.points), sp.eye(body.d)).tocsr()
-        functionals = across @ functionals
-    return GearModes(replace(found, shapes=functionals), moment, spun)
+    if to_flank is None:
+        return found
+    across = sp.kron(to_flank.interpolation(body.flank.points), sp.eye(body.d)).tocsr()
+    return replace(found, modes=replace(found.modes, shapes=across @ found.modes.shapes))
 
 
 def sector_matrices(
@@ -127,12 +134,13 @@ def sector_matrices(
 def _on_mesh(
     body: GearBody, sector_of: MeshData, traction: NitscheTraction | None, choice: ModeChoice,
     computed: Callable[[], None],
-) -> tuple[RingModes, float, Floats, Numbers]:
-    """Modes, moment of inertia and `GearModes.spun` on a sector mesh, and the modes at its flank's functionals."""
+) -> GearModes:
+    """Modes at the functionals of the flank of a sector mesh."""
     elastic, N = sector_body(sector_of, body.material, body.member), body.gear.z
     sector, M, parts = sector_matrices(elastic, surface_of(sector_of, "flank"), traction, N)
     found = choice.of(sector, N, computed)
     r = spin(sector_of.points[:, : body.d], np.zeros(body.d)).ravel()
     pushed = np.real(found.shapes.T @ (M @ r)[parts.free])
     spun = np.where(found.harmonic == 0, N * pushed, 0.0)
-    return found, float(N * (r @ (M @ r))), spun, parts.functionals.tocsc()[:, parts.free] @ found.shapes
+    shapes = parts.functionals.tocsc()[:, parts.free] @ found.shapes
+    return GearModes(replace(found, shapes=shapes), float(N * (r @ (M @ r))), spun)

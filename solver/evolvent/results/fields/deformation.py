@@ -64,7 +64,8 @@ class GearField:
         assert isinstance(body.chain, ChainedCompliance)
         self.body, self._pitch = body, 2.0 * np.pi / body.gear.z
         self._cuts = body.chain.cut_displacements(self._rows, self._forces)
-        parts = sector_parts(sector_body(body.mesh, body.material, body.member), body.flank, body.traction, self._pitch)
+        elastic = sector_body(body.condensed_mesh, body.material, body.member)
+        parts = sector_parts(elastic, body.flank, body.traction, self._pitch)
         self._free, number = parts.free, np.full(parts.stiffness.shape[0], -1)
         number[self._free] = np.arange(len(self._free))
         K, P = parts.stiffness[self._free][:, self._free], parts.functionals[:, self._free]

@@ -52,6 +52,9 @@ from evolvent_meshes.mesh.vtk_xml import xml_bytes
 Arrays = dict[str, Floats]
 """Name -> values (n,) or (n, 3) at the nodes of a surface."""
 
+SAME_LEVEL = 1e-6
+"""Heights closer than this are one level of nodes [mm]."""
+
 
 def write_fields(run: RunData, folder: RunFolder) -> Path:
     """Writes the series of a run to OUT/fields; returns the .pvd file. Raises WriteError, FolderError."""
@@ -98,12 +101,23 @@ def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: Member
         "tooth": np.full(len(nodes.points), float(tooth)),
         "roll_distance_mm": ξ,
     }
+    below, above = _around(nodes.z, np.unique(run.flank.z))
     for each in solved:
         values_of = _pinion_values if gear == Member.PINION else _wheel_values
-        edge, kink = (layers(each.cut, tooth, nodes.z) for layers in (on_tip_edge, over_kink))
+        edge, kink = (
+            layers(each.cut, tooth, below) | layers(each.cut, tooth, above) for layers in (on_tip_edge, over_kink)
+        )
         values = _apart(values_of(run, each.result, tooth), edge, kink & ~edge)
         arrays |= {f"{name} (mu={each.result.friction:g})": value for name, value in values.items()}
     return {name: on_flank(shape, value) for name, value in arrays.items()}
+
+
+def _around(z: Floats, levels: Floats) -> tuple[Floats, Floats]:
+    """The pinion's `levels` of nodes (k,) next to heights z (n,), below and above: nodes of the wheel lie between them
+    and have pressures of both."""
+    above = np.minimum(np.searchsorted(levels, z - SAME_LEVEL), len(levels) - 1)
+    below = np.maximum(np.searchsorted(levels, z + SAME_LEVEL) - 1, 0)
+    return levels[below], levels[above]
 
 
 def _apart(values: Arrays, edge: Bools, kink: Bools) -> Arrays:

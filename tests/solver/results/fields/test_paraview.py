@@ -27,7 +27,7 @@ def run() -> RunData:
 
 def test_series_opens_with_its_times_and_arrays(run: RunData, tmp_path: Path) -> None:
     """Exact: one time a position, the pinion rotation in degrees; the largest nodal pressure as computed; one array per
-    friction coefficient; pressures on both gears."""
+    friction coefficient; pressures on both gears, on the wheel, whose layers are others, to 15 %."""
     reader = pyvista.get_reader(str(write_fields(run, RunFolder(tmp_path))))
     np.testing.assert_allclose(reader.time_values, np.degrees(run.angles), atol=1e-6)
     for k, time in enumerate(reader.time_values):
@@ -37,7 +37,7 @@ def test_series_opens_with_its_times_and_arrays(run: RunData, tmp_path: Path) ->
             name = f"pressure_MPa (mu={solved.result.friction:g})"
             pressure = np.fmax(flanks[name], flanks["edge_" + name])  # of NaN and a number the number
             assert pressure[flanks["gear"] == 0].max() == pytest.approx(solved.result.pressure.max(), rel=1e-6)
-            assert pressure[flanks["gear"] == 1].max() == pytest.approx(solved.result.contact.pressure.max(), rel=0.1)
+            assert pressure[flanks["gear"] == 1].max() == pytest.approx(solved.result.contact.pressure.max(), rel=0.15)
         assert gears.n_cells > 1000
     assert not list(tmp_path.rglob("*.evolvent-part*"))
 

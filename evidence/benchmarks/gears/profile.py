@@ -51,7 +51,7 @@ ONE_MESH_PARTS = (
     ("condensing: leaves, by MUMPS", "fem/condensation/mumps.py", "schur_complement"),
     ("condensing: adding updates up", "fem/condensation/nested_dissection.py", "add"),
     ("condensing: separators, by LAPACK", "fem/condensation/nested_dissection.py", "eliminate"),
-    ("the ring of teeth", "gears/ring/ring_compliance.py", "__init__"),
+    ("the ring of teeth", "gears/ring/ring_compliance.py", "of"),
     ("positions: search", "gears/contact/pair_contact.py", "gear_contact"),
     ("positions: compliance of the contact", "gears/contact/pair_contact.py", "system"),
     ("positions: what the window leaves out", "gears/contact/overlap_check.py", "overlap_outside"),

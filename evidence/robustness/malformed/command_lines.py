@@ -19,6 +19,7 @@ SOUND: Mapping[str, str] = {
     "--out DIR": "out", "--out FILE.png": "teeth.png", "--out FILE.msh": "pair.msh",
     "--level line|quick|standard|fine": "quick", "--set KEY=VALUE": "load.torque_Nm=100", "--exact NAME": "window",
     "--percent LIST": "50,100", "--workers N": "1", "--scheduler ADDRESS": "tcp://127.0.0.1:1",
+    "--cache-size GB": "1", "list|clear": "list",
     "--petsc-options OPTIONS": "-log_view", "--force-N": "500", "--pin-diameter-mm": "6", "--run-in-m": "500",
 }
 """Kind of a parameter, as `Parameter.kind` has it -> a value that is right; files of these names are in the folder

@@ -34,6 +34,8 @@ WRONG: Mapping[str, tuple[str, ...]] = {
     "--exact NAME": ("", "windows", "all", "Window", "window,plane", "\udcff"),
     "--percent LIST": ("", ",", "50,", "0", "-50", "50,50", "nan", "1e9", "fifty", "50;100", "50%",
                        ",".join(map(str, range(1, 1001)))),
+    "--cache-size GB": ("", "-1", "nan", "inf", "1e9", "20 GB", "many"),
+    "list|clear": ("", "List", "lists", "clear all", "\udcff"),
     "--workers N": ("", "0", "-1", "two", "1.5", "1e3", "nan", "1" * 400),
     "--scheduler ADDRESS": ("", "nowhere", "http://127.0.0.1:1", "tcp://", "tcp://127.0.0.1", "tcp://127.0.0.1:0x1",
                             "tcp://127.0.0.1:99999999", "tls://127.0.0.1:1", "ucx://127.0.0.1:1", "tcp://[::1",

@@ -200,7 +200,7 @@ def test_coefficients_give_the_diameters() -> None:
 
 @pytest.mark.parametrize(("level", "elements"), [("quick", 1.7), ("standard", 3), ("fine", 6)])
 def test_resolution_follows_the_contact_width(level: str, elements: float) -> None:
-    """Yang: as many elements as ∫ds/h wants with h = 2b/elements, whose torque is 1.6 % above that for which
+    """Yang: as many elements as ∫ds/h wants with h = 2b/elements, whose torque is 2.4 % above that for which
     meshes are made; at twice the torque 1/√2 of them, but for half a step."""
     scene = scene_from_text(YANG, [f"mesh.level={level}"])
     assert elements_per_contact_width(gear_problem(scene)) == elements

@@ -84,6 +84,8 @@ def dissect(matrix: sp.spmatrix, graph: sp.spmatrix | None, leaf: int) -> tuple[
 def _dissect(compressed: CompressedGraph, numbers: Ints, leaf: int, begin: int) -> tuple[Ints, SeparatorTree]:
     """Elimination order of the vertices called `numbers` (v,), and their tree, whose rows start at `begin`."""
     end = begin + int(compressed.weights.sum())
+    if not len(numbers):  # all rows are held
+        return numbers, SeparatorTree(begin, end, end)
     if end - begin <= leaf:
         # MUMPS' minimum degree breaks ties in the order it is given: a third fewer operations
         return numbers[reverse_cuthill_mckee(compressed.graph, symmetric_mode=True)], SeparatorTree(begin, end, end)

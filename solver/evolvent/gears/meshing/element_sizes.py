@@ -60,6 +60,9 @@ LINE_LAND = 0.3
 TORQUE_STEP = 1.3
 """Ratio of two torques next to each other for which meshes are made. Torques within a step share their meshes, and what
 is condensed of them; elements across the contact are up to 7 % wider or narrower than for the torque itself."""
+RELATIVE_WIDTH = 0.0329
+"""Half-width b_H of a contact over the normal module on which a step lies: He's pair under 170 N·m, whose meshes many
+figures of docs/ are of."""
 FORE_LAND = 1.2
 """Distance from the start of the fine flank to the start of active profile, in half-widths of the contact, which has a
 width."""
@@ -140,10 +143,10 @@ def _below_flank(problem: GearProblem, depths: Floats, module: float) -> SectorR
 
 def mesh_estimate(problem: GearProblem) -> HertzEstimate:
     """Hertz contact under the torque of a problem, rounded so that (b_H/m_n)² at the pitch point, which grows with the
-    torque, is a power of `TORQUE_STEP`."""
+    torque, is a power of `TORQUE_STEP` times that of `RELATIVE_WIDTH`."""
     estimate = problem.hertz_estimate
-    relative_width = float(estimate.half_width(0.0)) / problem.pair.pinion.normal_module
-    steps = math.log(relative_width**2) / math.log(TORQUE_STEP)
+    width = float(estimate.half_width(0.0)) / problem.pair.pinion.normal_module / RELATIVE_WIDTH
+    steps = math.log(width**2) / math.log(TORQUE_STEP)
     return replace(estimate, pinion_torque=TORQUE_STEP ** (round(steps) - steps) * estimate.pinion_torque)
 
 

@@ -37,7 +37,7 @@ from evolvent_meshes.arrays import Floats
 from tests.support.run_parts import GOOD
 from tests.support.synthetic_run import synthetic_run
 
-COARSE = ('mesh.level="quick"', "contact.friction=[0.2]")
+COARSE = ('mesh.level="quick"', "contact.friction=[0.2]", "load.torque_Nm=0.89")  # for which meshes are made
 
 
 def plastic(positions: int) -> RunData:
@@ -153,12 +153,12 @@ def test_scatter_of_noise_about_a_parabola() -> None:
 def test_spacing_errors_of_a_plastic_pinion_hold_the_true_error() -> None:
     """Problem: an unrelieved plastic pinion, whose pressure rises by 8 % from one of 20 positions to the next where it
     leaves the tip-edge zone, and whose transmission error has a corner half a degree wide, at quick. Exact: the same
-    mesh at 80 positions. Nine in ten of the parts hold the true error; at 12 and 20 positions that of the largest
-    pressure is a few per cent, a hundred times what round-off would be, and shrinks with more."""
+    mesh at 80 positions. Nine in ten of the parts hold the true error, in the median they are up to seven
+    times it; at 12 and 20 positions that of the largest pressure is a few per cent, a hundred times what round-off would be, and shrinks with more."""
     problem = SpacingProblem("plastic", load_scene(PLASTIC, COARSE))
     rows = measure_spacing(problem, (12, 20), 80)
     assert hit_rate(rows) >= 0.9
-    assert np.median([row.bar / row.error for row in rows if row.error]) < 5.0
+    assert np.median([row.bar / row.error for row in rows if row.error]) < 7.0
     shares = [row.bar / row.value for row in rows if row.figure == "max_pressure_MPa"]
     assert 0.4 > shares[0] > shares[-1] > 1e-3
 

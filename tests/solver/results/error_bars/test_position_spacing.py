@@ -153,8 +153,9 @@ def test_scatter_of_noise_about_a_parabola() -> None:
 def test_spacing_errors_of_a_plastic_pinion_hold_the_true_error() -> None:
     """Problem: an unrelieved plastic pinion, whose pressure rises by 8 % from one of 20 positions to the next where it
     leaves the tip-edge zone, and whose transmission error has a corner half a degree wide, at quick. Exact: the same
-    mesh at 80 positions. Nine in ten of the parts hold the true error, in the median they are up to seven
-    times it; at 12 and 20 positions that of the largest pressure is a few per cent, a hundred times what round-off would be, and shrinks with more."""
+    mesh at 80 positions. Nine in ten of the parts hold the true error, in the median they are up to seven times
+    it; at 12 and 20 positions that of the largest pressure is a few per cent, a hundred times what round-off would
+    be, and shrinks with more."""
     problem = SpacingProblem("plastic", load_scene(PLASTIC, COARSE))
     rows = measure_spacing(problem, (12, 20), 80)
     assert hit_rate(rows) >= 0.9

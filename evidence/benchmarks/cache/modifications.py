@@ -61,7 +61,6 @@ def cases() -> Iterator[Case]:
     yield case("He, plane, fine, 80 µm", SPUR, whole, *relieved(80.0), *FINE)
     yield case("He in space, quick, 20 µm, crowned 15 µm", SPUR, whole, *relieved(20.0), "pinion.lead_crowning_um=15",
                *QUICK)
-    yield case("Yang, quick, 20 µm", HELICAL, whole, *relieved(20.0), *QUICK)
     yield case("Yang, quick, 60 µm, crowned 10 µm", HELICAL, whole, *relieved(60.0), "pinion.lead_crowning_um=10",
                *QUICK)
 

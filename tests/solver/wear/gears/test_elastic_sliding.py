@@ -35,7 +35,7 @@ def spur(wheel_modulus: int) -> tuple[Scene, int]:
 SCENES = {
     "steel": lambda: spur(206),
     "plastic": lambda: spur(3),
-    "helical": lambda: (helical_scene("contact.friction=0", "mesh.order=2", "mesh.elements_per_contact_width=1"), 16),
+    "helical": lambda: (helical_scene("contact.friction=0", "mesh.order=2", "mesh.elements_per_contact_width=1.1"), 16),
 }
 
 

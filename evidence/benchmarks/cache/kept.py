@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from evidence.benchmarks.gears.whole_runs import FIRST, SLENDER
 from evidence.benchmarks.measuring import keep_rows
 from evidence.checkout import ROOT
 from evidence.scenes import HELICAL, PLAIN, SPUR
@@ -33,7 +32,6 @@ CASES = (
     ("He, plane, standard", SPUR, ()),
     ("Yang, quick", HELICAL, ("mesh.level=quick",)),
     ("Yang, standard", HELICAL, ()),
-    ("23/81, 50 N·m, standard", ROOT / FIRST, (*SLENDER, "load.torque_Nm=50")),
 )
 
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from tests.support.running import processes
+
+if TYPE_CHECKING:
+    from evolvent.fem.cache.cache import Cache
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -25,6 +29,20 @@ def _nothing_kept() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("EVOLVENT_CACHE_GB", "0")
         yield
+
+
+@pytest.fixture
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cache:
+    """An empty cache of 1 GB in a folder of the test, also of programs that it starts. Compiled forms stay where they
+    are in this process."""
+    from evolvent.fem.cache import cache  # starts MPI, see above
+
+    folder = tmp_path / "evolvent" / cache.FOLDER
+    folder.mkdir(parents=True)
+    monkeypatch.setattr(cache, "cache_directory", lambda name: folder)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv(cache.SIZE, "1")
+    return cache.Cache.of_environment()
 
 
 @pytest.fixture(autouse=True)

@@ -19,9 +19,8 @@ from evolvent.scene.line_level import require_resolved
 from evolvent_meshes.files import require_writable, write_bytes
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
-
-
 LIST, CLEAR = "list", "clear"
+"""Requests to `cache`."""
 
 
 def _require_new(out: Path, suffix: str, overwrite: bool) -> None:

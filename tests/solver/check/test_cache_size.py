@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from mpi4py import MPI
 
 from evolvent.check.cache_size import kept_megabytes
-from evolvent.fem.backend.cache_folder import cache_directory
-from evolvent.fem.cache.cache import SIZE, Cache
+from evolvent.fem.cache.cache import Cache
 from evolvent.gears.gear_model import prepare_model
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -17,13 +14,9 @@ from tests.support.gear_cases import helical_scene, spur_scene
 
 
 @pytest.mark.parametrize("scene", [spur_scene("mesh.level=fine"), helical_scene("mesh.elements_per_contact_width=1")])
-def test_estimate_is_the_size_of_the_files(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_estimate_is_the_size_of_the_files(scene: Scene, kept: Cache) -> None:
     """Problem: a pair in the plane and one in space, each on one mesh. Exact: the files of both gears, to a quarter."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setenv(SIZE, "1")
-    cache_directory.cache_clear()
     problem = gear_problem(scene)
     prepare_model(problem, MPI.COMM_SELF)
-    written = sum(each.size for each in Cache.of_environment().entries())
-    cache_directory.cache_clear()
+    written = sum(each.size for each in kept.entries())
     assert kept_megabytes(problem) == pytest.approx(1e-6 * written, rel=0.25)

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
-from evolvent.fem.backend.cache_folder import cache_directory
 from evolvent.fem.cache.cache import SIZE, Cache
 from evolvent.fem.condensation.schur_complement import SectorSystem
 from evolvent.gears.gear_model import GearModel, prepare_model
@@ -50,16 +47,6 @@ def one_mesh(*settings: str) -> tuple[Scene, Mesher]:
 def in_levels(*settings: str) -> tuple[Scene, Mesher]:
     """The helical pair with a level on few coarse cells."""
     return helical_scene("mesh.order=2", *settings), few_cells
-
-
-@pytest.fixture
-def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Cache]:
-    """An empty cache of 1 GB."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setenv(SIZE, "1")
-    cache_directory.cache_clear()
-    yield Cache.of_environment()
-    cache_directory.cache_clear()
 
 
 def prepared(case: tuple[Scene, Mesher]) -> GearModel:

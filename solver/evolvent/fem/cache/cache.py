@@ -23,6 +23,7 @@ from evolvent.fem.cache.program import program_identity
 from evolvent.fem.cache.value_coding import coded, decoded
 from evolvent.fem.cache.value_files import WRITING, DamagedFile, read_about, read_value, write_value
 from evolvent_meshes.digests import digest
+from evolvent_meshes.errors import InputError
 
 T = TypeVar("T")
 FOLDER = "condensed"
@@ -60,9 +61,14 @@ class Cache:
 
     @staticmethod
     def of_environment() -> Cache:
-        """The cache with the size that the environment variable `SIZE` says."""
+        """The cache with the size that the environment variable `SIZE` says. Raises InputError where it is no size."""
         given = os.environ.get(SIZE, "")
-        return Cache(float(given) if given else None)
+        if not given:
+            return Cache()
+        with suppress(ValueError):
+            if 0.0 <= (size := float(given)) < float("inf"):
+                return Cache(size)
+        raise InputError(f"{SIZE}: wanted a size [GB], 0 or more, found {given!r}; correct it, or unset it")
 
     def kept(self, about: str, inputs: object, kind: type[T], make: Callable[[], T]) -> T:
         """The value for some inputs, read or, where there is none, made and kept.

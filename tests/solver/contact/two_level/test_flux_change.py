@@ -32,7 +32,7 @@ def found_and_exact(mesh: MeshData, columns: Ints, safety: float) -> tuple[Float
 @pytest.mark.parametrize("mesh", [rectangle(4.0, 2.0, 6, 3, 2), box((2.0, 2.0, 1.0), (3, 2, 2), 2, "hexahedron")])
 @pytest.mark.parametrize("every", [1, 3])
 def test_change_by_nitsches_functionals(mesh: MeshData, every: int) -> None:
-    """Of all columns, and of a third of them, which take another way. Exact, to rounding."""
+    """All columns, and a third of them, which take another way. Exact, to rounding."""
     size = mesh.dimension * len(np.unique(mesh.facets["top"]))
     found, exact = found_and_exact(mesh, np.arange(0, size, every), 2.0)
     assert np.abs(found - exact).max() < 1e-11 * np.abs(exact).max()

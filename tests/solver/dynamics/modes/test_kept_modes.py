@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import NoReturn
 
 import numpy as np
@@ -11,23 +10,21 @@ import pytest
 
 from evolvent.dynamics.modes import gear_modes as module
 from evolvent.dynamics.modes.gear_modes import ModeChoice, gear_modes
-from evolvent.fem.backend.cache_folder import cache_directory
-from evolvent.fem.cache.cache import SIZE
+from evolvent.fem.cache.cache import Cache
 from tests.support.gear_cases import model_of, spur_scene
 
 FEW = ModeChoice(0.0, 1)
 
 
-def test_modes_of_a_relieved_gear_are_those_that_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_modes_of_a_relieved_gear_are_those_that_are_kept(
+    kept: Cache, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Problem: one mode a harmonic of both gears of He's pair in the plane, then of the same pair with reliefs. Exact:
     the same numbers, computed once; other modes, and those of a lighter material, are computed."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    cache_directory.cache_clear()
     plain = model_of(spur_scene("mesh.level=quick"))
     relieved = model_of(spur_scene("mesh.level=quick", "pinion.tip_relief_um=20", "wheel.tip_relief_um=20"))
     pinion = plain.bodies[0]
     light = replace(pinion, material=replace(pinion.material, density=0.5 * pinion.material.density))
-    monkeypatch.setenv(SIZE, "1")
     first = [gear_modes(body, FEW) for body in plain.bodies]
 
     def refused(*_: object) -> NoReturn:
@@ -43,4 +40,3 @@ def test_modes_of_a_relieved_gear_are_those_that_are_kept(tmp_path: Path, monkey
             gear_modes(body, ModeChoice(0.0, 2))
     with pytest.raises(AssertionError, match="computed"):
         gear_modes(light, FEW)
-    cache_directory.cache_clear()

@@ -6,17 +6,15 @@ import logging
 import multiprocessing
 import os
 import signal
-from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from evolvent.fem.backend.cache_folder import cache_directory
 from evolvent.fem.cache import cache as module
 from evolvent.fem.cache.cache import LEFT_OVER, NOT_KEPT, SIZE, Cache
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import InputError
 
 KILOBYTES = 100
 """Size of a value."""
@@ -30,12 +28,9 @@ class Value:
 
 
 @pytest.fixture
-def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Cache]:
+def cache(kept: Cache) -> Cache:
     """A cache of ten values in a folder of its own."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    cache_directory.cache_clear()
-    yield Cache(10.5e-6 * KILOBYTES)
-    cache_directory.cache_clear()
+    return Cache(10.5e-6 * KILOBYTES)
 
 
 def made(number: int) -> Value:
@@ -43,7 +38,7 @@ def made(number: int) -> Value:
     return Value(np.full(KILOBYTES * 1000 // 8, float(number)))
 
 
-def kept(cache: Cache, number: int, calls: list[int]) -> Value:
+def value_of(cache: Cache, number: int, calls: list[int]) -> Value:
     """The value for a number from the cache; `calls` gets the numbers of those that are made."""
 
     def make() -> Value:
@@ -57,7 +52,7 @@ def test_a_value_is_made_once(cache: Cache) -> None:
     """The second call reads, also by another object of the cache; other inputs are another value."""
     calls: list[int] = []
     for number, by in ((1, cache), (1, Cache(cache.size_GB)), (2, cache), (1, cache)):
-        assert np.array_equal(kept(by, number, calls).array, made(number).array)
+        assert np.array_equal(value_of(by, number, calls).array, made(number).array)
     assert calls == [1, 2]
     assert {each.about for each in cache.entries()} == {"value 1", "value 2"}
 
@@ -65,9 +60,9 @@ def test_a_value_is_made_once(cache: Cache) -> None:
 def test_a_value_of_another_program_is_not_used(cache: Cache, monkeypatch: pytest.MonkeyPatch) -> None:
     """Another version has another identity: it makes its own value, and the old one stays."""
     calls: list[int] = []
-    kept(cache, 1, calls)
+    value_of(cache, 1, calls)
     monkeypatch.setattr(module, "program_identity", lambda: "another")
-    kept(cache, 1, calls)
+    value_of(cache, 1, calls)
     assert calls == [1, 1] and len(cache.entries()) == 2
 
 
@@ -76,11 +71,11 @@ def test_the_ones_used_least_recently_go(cache: Cache) -> None:
     are gone, the folder is within its size."""
     calls: list[int] = []
     for number in range(10):
-        kept(cache, number, calls)
+        value_of(cache, number, calls)
         os.utime(cache.entries()[0].path, (number, number))
-    kept(cache, 0, calls)
+    value_of(cache, 0, calls)
     for number in (10, 11):
-        kept(cache, number, calls)
+        value_of(cache, number, calls)
     names = {each.about for each in cache.entries()}
     assert names == {f"value {number}" for number in (0, *range(3, 12))}
     assert sum(each.size for each in cache.entries()) <= cache.bound
@@ -89,9 +84,9 @@ def test_the_ones_used_least_recently_go(cache: Cache) -> None:
 def test_a_value_larger_than_the_cache_is_not_kept(cache: Cache, caplog: pytest.LogCaptureFixture) -> None:
     """It is made each time, removes nothing else, and the log says so."""
     small, calls = Cache(0.5e-6 * KILOBYTES), list[int]()
-    kept(cache, 1, calls)
+    value_of(cache, 1, calls)
     with caplog.at_level(logging.INFO, "evolvent"):
-        kept(small, 2, calls)
+        value_of(small, 2, calls)
     assert calls == [1, 2] and [each.about for each in cache.entries()] == ["value 1"]
     assert "not kept: value 2" in caplog.text
 
@@ -103,30 +98,38 @@ def test_a_damaged_file_is_made_again(
     """An empty file, one of another program, a flipped bit: the value is made again and kept, with a word in the log.
     """
     calls: list[int] = []
-    kept(cache, 1, calls)
+    value_of(cache, 1, calls)
     path = cache.entries()[0].path
     whole = path.read_bytes()
     path.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]) if content is None else content)
     with caplog.at_level(logging.INFO, "evolvent"):
-        assert np.array_equal(kept(cache, 1, calls).array, made(1).array)
+        assert np.array_equal(value_of(cache, 1, calls).array, made(1).array)
     assert "damaged" in caplog.text and "made again" in caplog.text
-    kept(cache, 1, calls)
+    value_of(cache, 1, calls)
     assert calls == [1, 1]
 
 
 def test_nothing_is_read_or_kept_where_the_size_is_0(cache: Cache, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a cache each call makes its value; by the environment variable, too."""
     calls: list[int] = []
-    kept(cache, 1, calls)
+    value_of(cache, 1, calls)
     monkeypatch.setenv(SIZE, "0")
     for none in (NOT_KEPT, Cache.of_environment()):
-        kept(none, 1, calls)
+        value_of(none, 1, calls)
         assert not none.entries() and none.clear() == 0
     assert calls == [1, 1, 1]
     monkeypatch.setenv(SIZE, "2")
     assert Cache.of_environment().bound == 2e9
     monkeypatch.delenv(SIZE)
     assert Cache.of_environment().size_GB is None and Cache.of_environment().bound > 0.0
+
+
+@pytest.mark.parametrize("size", ["many", "-1", "nan", "inf", "20 GB"])
+def test_a_size_that_is_none_is_refused(size: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The message names the environment variable, what it holds and what to do."""
+    monkeypatch.setenv(SIZE, size)
+    with pytest.raises(InputError, match=f"{SIZE}: wanted a size .*found '{size}'; correct it"):
+        Cache.of_environment()
 
 
 @pytest.mark.parametrize("fault", ["full disk", "folder gone"])
@@ -145,7 +148,7 @@ def test_a_value_that_cannot_be_written_is_returned(
         monkeypatch.setattr(module, "write_value", full)
     calls: list[int] = []
     with caplog.at_level(logging.INFO, "evolvent"):
-        assert np.array_equal(kept(cache, 1, calls).array, made(1).array)
+        assert np.array_equal(value_of(cache, 1, calls).array, made(1).array)
     assert "not kept: value 1" in caplog.text
 
 
@@ -157,7 +160,7 @@ def test_what_a_killed_program_has_left_goes(cache: Cache) -> None:
     for path in (old, new):
         path.write_bytes(b"begun")
     os.utime(old, (new.stat().st_mtime - 2 * LEFT_OVER,) * 2)
-    kept(cache, 1, calls)
+    value_of(cache, 1, calls)
     assert len(cache.entries()) == 1 and not old.exists() and new.exists()
     assert cache.clear() > 5 and not list(cache.folder.iterdir())
 

@@ -25,16 +25,21 @@ from evolvent_meshes.sector.sector import sector_mesh
 from tests.support.meshes.sector_cases import gear_and_start
 
 
-def correction() -> StripCorrection:
-    """Of all patches."""
+def patches_of(face_width: float, layers: int, flux_safety: float | None) -> LevelPatches:
+    """Patches of Yang's pinion with another face width [mm], 18 rows and so many layers of coarse cells."""
     gear, start = gear_and_start("yang pinion")
-    gear = replace(gear, face_width=2.5)
+    gear = replace(gear, face_width=face_width)
     resolution = SectorResolution(
-        profile_elements=18, face_elements=5, end_size_ratio=1.0, flank_start_diameter=start,
+        profile_elements=18, face_elements=layers, end_size_ratio=1.0, flank_start_diameter=start,
         layer_depths=(0.2, 0.25, 0.285),
     )
     body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (2, 1, 1)))
-    flank = LevelPatches(body, gear.base_radius, gear.twist, HELD, 2.0)
+    return LevelPatches(body, gear.base_radius, gear.twist, HELD, flux_safety)
+
+
+def correction() -> StripCorrection:
+    """Correction from all patches of a flank that carries the pressure."""
+    flank = patches_of(2.5, 5, 2.0)
     return flank.correction({patch.block: flank.response(patch).contact for patch in flank.patches()})
 
 
@@ -55,15 +60,8 @@ def test_rows_loaded_with_a_block_are_those_loaded_alone(monkeypatch: pytest.Mon
     """Yang's pinion, 1.2 mm wide, 18 × 2 cells of which those at row 3 and 14 are sampled with the blocks at the ends:
     their responses, from those of the blocks, are those to loads on these rows alone in the same patches. Exact, to
     single precision."""
-    gear, start = gear_and_start("yang pinion")
-    gear = replace(gear, face_width=1.2)
-    resolution = SectorResolution(
-        profile_elements=18, face_elements=2, end_size_ratio=1.0, flank_start_diameter=start,
-        layer_depths=(0.2, 0.25, 0.285),
-    )
-    body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (2, 1, 1)))
     monkeypatch.setattr(level_patches, "REACH", 0.5)
-    flank = LevelPatches(body, gear.base_radius, gear.twist, HELD, None)
+    flank = patches_of(1.2, 2, None)
     together = flank.patches()
     found = flank.correction({patch.block: flank.response(patch).contact for patch in together})
     rows, _ = flank.axes

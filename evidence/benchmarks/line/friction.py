@@ -26,7 +26,8 @@ from evolvent_meshes.arrays import Floats
 FRICTION, POSITIONS = 0.1, 20
 PAIRS: tuple[tuple[str, float], ...] = (
     ("He, plane", 30.0), ("He, plane", 100.0), ("He, linear relief, plane", 100.0), ("He, lead crowning", 30.0),
-    ("He, lead crowning", 100.0), ("Yang, relieved", 30.0), ("Yang, relieved", 100.0),
+    ("He, lead crowning", 100.0), ("He, half the face, lead crowning", 5.0), ("Yang, relieved", 30.0),
+    ("Yang, relieved", 100.0),
 )
 """Pair and torque in percent."""
 

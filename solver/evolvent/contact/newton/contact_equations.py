@@ -25,9 +25,9 @@ from evolvent.contact.nitsche.contact_operator import ContactLaw, ContactOperato
 from evolvent.contact.nitsche.coulomb import LawValues
 from evolvent_meshes.arrays import Floats
 
-TOLERANCE = 1e-10  # residual force over the force in the system
+TOLERANCE = 1e-10  # residual force over the force in the system, where nothing else is wanted
 QUADRATIC = 30.0  # lower bound of a relative residual over the square of the one before (200 to 1000 were observed)
-ROUGHEST, FINEST = 1e-3, 1e-7  # limits of the accuracy to which a Newton step is solved
+ROUGHEST, FINEST = 1e-2, 1e-7  # limits of the accuracy to which a Newton step is solved
 LAST_STEP = 1e-2  # of the tolerance: residual that the linear solve of the last step may leave
 
 
@@ -43,6 +43,7 @@ class CondensedSystem:
     resistance: D (r, r), forces against unit amplitudes of the free rigid motions [N/mm, N, N·mm], symmetric.
     lever: (r,) largest jump by a unit amplitude of each motion [mm per unit], to compare forces with moments.
     least_scale: force [N] with which residuals are compared at least.
+    tolerance: residual force, over the force in the system, at which Newton's method ends.
     """
 
     operator: ContactOperator
@@ -53,6 +54,7 @@ class CondensedSystem:
     resistance: Floats
     lever: Floats
     least_scale: float = 0.0
+    tolerance: float = TOLERANCE
 
     @cached_property
     def motions(self) -> FreeMotions:
@@ -153,7 +155,7 @@ class ContactEquations:
 
     def solve(self, x: Floats, right: Floats) -> Floats:
         """Newton step T(x)⁻¹ right, as accurate as this step needs."""
-        accuracy = _accuracy(float(np.linalg.norm(right)), self.scale(x))
+        accuracy = _accuracy(float(np.linalg.norm(right)), self.scale(x), self.system.tolerance)
         return self.system.steps.solve(self.tangent(x), right, accuracy)
 
     def tangent(self, x: Floats) -> Tangent:
@@ -166,9 +168,9 @@ class ContactEquations:
         return self.law(self.system.operator.trial(jump, self.slip))
 
 
-def _accuracy(residual: float, scale: float) -> float:
+def _accuracy(residual: float, scale: float, tolerance: float) -> float:
     """Fraction of the residual to which a Newton step's equations are solved: well below the residual that the
     nonlinearity of the contact law leaves anyway, and no further below the tolerance than results show."""
     relative = residual / scale if scale > 0.0 else 1.0
     roughest = ROUGHEST / max(relative, 1.0)  # of the load too: a start from the right points is not to be lost
-    return max(min(QUADRATIC * relative, roughest), LAST_STEP * TOLERANCE / max(relative, TOLERANCE), FINEST)
+    return max(min(QUADRATIC * relative, roughest), LAST_STEP * tolerance / max(relative, tolerance), FINEST)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.contact.newton import snes
-from evolvent.contact.newton.contact_equations import TOLERANCE, CondensedSystem, ContactEquations
+from evolvent.contact.newton.contact_equations import CondensedSystem, ContactEquations
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.coulomb import LawValues, coulomb, starting_guess
 from evolvent_meshes.arrays import Bools, Floats
@@ -68,14 +68,13 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
 
 
 def frictionless(
-    system: CondensedSystem, start: Bools | None = None, near: InitialGuess | None = None, tolerance: float = TOLERANCE
+    system: CondensedSystem, start: Bools | None = None, near: InitialGuess | None = None
 ) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
     start: (q,) bool, points assumed in contact in the first, linear, solve; by default all, and of bodies with inertia
         those that would overlap without contact forces.
     near: a guess of the solution, taken instead.
-    tolerance: residual force over the load.
     Raises NotConverged.
     """
     problem = ContactEquations(system, lambda t: coulomb(t, 0.0))
@@ -83,7 +82,7 @@ def frictionless(
         x = problem.join(near.force, near.motion)
     else:
         x = _assumed_contact(system, _overlapping(system) if start is None else start)
-    return _converged(problem, x, "contact without friction", tolerance)
+    return _converged(problem, x, "contact without friction")
 
 
 def _overlapping(system: CondensedSystem) -> Bools:
@@ -113,7 +112,7 @@ def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
     law = ContactEquations(system, lambda t: starting_guess(t, 0.0, np.zeros((len(t), system.k - 1))), slip)
     every = np.ones(len(system.operator.weights), dtype=bool)
     start = _assumed_contact(system, every, slip)
-    return _equilibrium(law, snes.solve(law, start, "contact without slip", ITERATIONS // 2, TOLERANCE))
+    return _equilibrium(law, snes.solve(law, start, "contact without slip", ITERATIONS // 2, system.tolerance))
 
 
 def sliding(system: CondensedSystem, friction: Floats | float, heading: Floats, start: Equilibrium) -> Equilibrium:
@@ -143,7 +142,8 @@ def frictional(
     law = ContactEquations(system, lambda t: coulomb(t, friction), slip)
     if near is not None:
         try:
-            root = snes.solve(law, law.join(near.force, near.motion), "Coulomb friction", GUESS_ITERATIONS, TOLERANCE)
+            x = law.join(near.force, near.motion)
+            root = snes.solve(law, x, "Coulomb friction", GUESS_ITERATIONS, system.tolerance)
         except NotConverged:  # the guess lost contact altogether
             root = None
         if root is not None and root.converged:
@@ -171,7 +171,7 @@ def _starts(
     for known in headings:
         guess = ContactEquations(system, lambda t: starting_guess(t, friction, known), slip)  # noqa: B023  used at once
         x = guess.join(force, start.motion)
-        yield snes.solve(guess, x, "first guess of slip", 1, TOLERANCE).x
+        yield snes.solve(guess, x, "first guess of slip", 1, system.tolerance).x
     yield ContactEquations(system, lambda t: coulomb(t, friction), slip).join(force, start.motion)
 
 
@@ -191,8 +191,8 @@ def _assumed_contact(system: CondensedSystem, touching: Bools, slip: Floats | No
     return -problem.solve(zero, problem.residual(zero))
 
 
-def _converged(problem: ContactEquations, start: Floats, stage: str, tolerance: float = TOLERANCE) -> Equilibrium:
-    root = snes.solve(problem, start, stage, ITERATIONS, tolerance)
+def _converged(problem: ContactEquations, start: Floats, stage: str) -> Equilibrium:
+    root = snes.solve(problem, start, stage, ITERATIONS, problem.system.tolerance)
     if not root.converged:
         relative = root.residual / problem.scale(root.x)
         raise NotConverged(

@@ -1,4 +1,7 @@
-"""The contact patch of a position, as a prediction of the next position's."""
+"""The contact patch of a position and the friction in it, as predictions of the next position's.
+
+All teeth are alike, and the patch moves on with the contact lines: so points are given relative to them.
+"""
 
 from __future__ import annotations
 
@@ -15,10 +18,9 @@ SLICE_WEIGHT = 0.5  # of distances along ξ beside those across the contact line
 
 @dataclass(frozen=True)
 class ContactPatch:
-    """Pressed points among the q points of a position. All teeth are alike, and the patch moves on with the contact
-    lines: so it is given relative to them.
+    """Pressed points among the q points of a position.
 
-    places: (q, 2), roll distance ξ times SLICE_WEIGHT and signed distance across the contact line [mm].
+    places: (q, 2), as of `contact_places`.
     pressed: (q,) bool.
     """
 
@@ -28,13 +30,52 @@ class ContactPatch:
     @staticmethod
     def of(geometry: ContactGeometry, pressure: Floats) -> ContactPatch:
         """Contact patch from the pressures (q,) at the points."""
-        return ContactPatch(_places(geometry), pressure > 0.0)
+        return ContactPatch(contact_places(geometry), pressure > 0.0)
 
     def at(self, geometry: ContactGeometry) -> Bools:
         """Points (q,) bool of another position whose nearest point in this patch is pressed."""
-        return np.asarray(self.pressed[cKDTree(self.places).query(_places(geometry))[1]])
+        return np.asarray(self.pressed[cKDTree(self.places).query(contact_places(geometry))[1]])
 
 
-def _places(geometry: ContactGeometry) -> Floats:
+NEAR = 0.05
+"""Distance in roll distance [modules] within which friction is taken from another point: near the pitch point, where it
+reverses, other contact lines know nothing of it."""
+
+
+@dataclass(frozen=True)
+class FrictionPattern:
+    """Friction over pressure at the k pressed points of a position. It hardly changes at a roll distance and a distance
+    from the contact line, as sliding depends on these.
+
+    places: (k, 2), as of `contact_places`.
+    ratio: (k, d−1), tangential traction over pressure.
+    module: normal module [mm].
+    """
+
+    places: Floats
+    ratio: Floats
+    module: float
+
+    @staticmethod
+    def of(geometry: ContactGeometry, traction: Floats) -> FrictionPattern:
+        """Friction pattern of tractions (q, d) at the points [MPa]."""
+        on = traction[:, 0] > 0.0
+        module = geometry.stand.pair.pinion.normal_module
+        return FrictionPattern(contact_places(geometry)[on], traction[on, 1:] / traction[on, :1], module)
+
+    def at(self, geometry: ContactGeometry) -> Floats:
+        """Friction over pressure (q, d−1) at the points of another position, from the nearest point of this one; zero
+        where that is none at this roll distance."""
+        places = contact_places(geometry)
+        if not len(self.places):
+            return np.zeros((len(places), self.ratio.shape[1]))
+        nearest = cKDTree(self.places).query(places)[1]
+        near = np.abs(self.places[nearest, 0] - places[:, 0]) <= SLICE_WEIGHT * NEAR * self.module
+        return np.where(near[:, None], self.ratio[nearest], 0.0)
+
+
+def contact_places(geometry: ContactGeometry) -> Floats:
+    """Places (q, 2) of the points: roll distance ξ times SLICE_WEIGHT and signed distance across the contact line
+    [mm]."""
     ξ = geometry.operator.shape @ geometry.roll_distance
     return np.column_stack([SLICE_WEIGHT * ξ, geometry.across])

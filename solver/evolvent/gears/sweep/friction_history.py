@@ -16,6 +16,7 @@ from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
+from evolvent.gears.sweep.contact_patch import FrictionPattern
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.rotation import turn
@@ -31,12 +32,14 @@ class FrictionHistory:
     rows: per gear (m, 2), rows (tooth, node) of its compliance.
     forces: per gear (m, d), contact forces on these rows in the gear's own frame [N; per mm of width in 2D].
     flux: (m, d), F at the pinion's rows in its own frame [mm].
+    pattern: friction at the points, from which the next position starts; None where it was read from a file.
     """
 
     stand: PairRotation
     rows: tuple[Ints, Ints]
     forces: tuple[Floats, Floats]
     flux: Floats
+    pattern: FrictionPattern | None = None
 
     @staticmethod
     def of(model: GearModel, contact: GearContact, equilibrium: Equilibrium) -> FrictionHistory:
@@ -47,7 +50,8 @@ class FrictionHistory:
         traction = with_components(equilibrium.traction, geometry.d)
         flux = contact.operator.flux(traction) @ geometry.stand.rotation(Member.PINION, geometry.d)
         stand = geometry.stand.turned(model.load.on, float(equilibrium.motion[0]))
-        return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
+        pattern = FrictionPattern.of(geometry, traction)
+        return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux, pattern)
 
     def earlier(self, pitches: int) -> FrictionHistory:
         """Friction history moved back by whole angular pitches, where other teeth of both gears stand as these do;
@@ -60,7 +64,7 @@ class FrictionHistory:
         pinion, wheel = (self.forces[gear][loaded[gear]] @ turn(turns[gear], d) for gear in Member)
         flux = self.flux[loaded[Member.PINION]] @ turn(turns[Member.PINION], d)
         stand = replace(self.stand, angle=self.stand.angle + turns[Member.PINION])
-        return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
+        return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux, self.pattern)
 
 
 @dataclass(frozen=True)
@@ -69,10 +73,12 @@ class PreviousJump:
 
     stand: where the gears stood.
     jump: (n, d), elastic jump w there, in the local frames of now [mm].
+    pattern: of friction there, None where it is not known.
     """
 
     stand: PairRotation
     jump: Floats
+    pattern: FrictionPattern | None = None
 
 
 def previous_jumps(
@@ -90,7 +96,8 @@ def previous_jumps(
     u1, u2 = (_displacements(geometry, histories, gear) for gear in Member)
     if vibration is not None:
         u1, u2 = u1 + vibration(Member.PINION), u2 + vibration(Member.WHEEL)
-    return [PreviousJump(each.stand, _jump(geometry, each.stand, *u)) for each, *u in zip(histories, u1, u2)]
+    jumps = [_jump(geometry, each.stand, *u) for each, *u in zip(histories, u1, u2)]
+    return [PreviousJump(each.stand, jump, each.pattern) for each, jump in zip(histories, jumps)]
 
 
 def previous_friction(geometry: ContactGeometry, history: FrictionHistory) -> Floats:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.equilibrium import Equilibrium, InitialGuess, frictional, with_components
 from evolvent.gears.contact.contact_geometry import ContactGeometry
@@ -13,6 +15,7 @@ from evolvent.gears.sweep.friction_history import PreviousJump
 from evolvent.gears.sweep.position_result import PositionResult, position_result
 from evolvent.gears.sweep.position_search import SharedPosition
 from evolvent.gears.sweep.slip import slip_direction, slip_increment
+from evolvent_meshes.arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -35,14 +38,17 @@ def solve_position(
 
     before: friction history at the contact's nodes, None without friction.
     span: Δφ since then [rad], negative where the wheel drives.
-    solved: the same position at other coefficients, to start from; the nearest ones last.
-    near: a guess of the solution, taken instead of theirs.
+    solved: the same position at other coefficients, to start from where the friction before is not known; the nearest
+        ones last.
+    near: a guess of the solution, taken instead.
 
     Raises NotConverged.
     """
     contact, equilibrium = shared.contact, shared.smooth
     if before is not None:
-        guess = near or extrapolated_guess(friction, [Solved(0.0, shared.smooth), *solved])
+        guess = near
+        if guess is None and before.pattern is None:
+            guess = extrapolated_guess(friction, [Solved(0.0, shared.smooth), *solved])
         equilibrium = frictional_equilibrium(
             contact.geometry, shared.system, friction, shared.smooth, before, span, guess
         )
@@ -57,7 +63,18 @@ def frictional_equilibrium(
     """Equilibrium with friction after a step Δφ = span [rad]. smooth: the one without friction; before: friction
     history at the contact's nodes; guess: of the solution. Raises NotConverged."""
     slip = slip_increment(geometry, before, span)
-    return frictional(system, friction, slip, slip_direction(geometry, span), smooth, guess)
+    return frictional(system, friction, slip, _expected_direction(geometry, friction, before, span), smooth, guess)
+
+
+def _expected_direction(geometry: ContactGeometry, friction: float, before: PreviousJump, span: float) -> Floats:
+    """Friction (q, d−1) over its bound with which Newton's method starts: as at the position before, where it was in
+    the known direction of sliding, or where that is not known; else full sliding in that direction."""
+    known = slip_direction(geometry, span)
+    if before.pattern is None:
+        return known
+    earlier = before.pattern.at(geometry) / friction
+    agrees = np.einsum("qa,qa->q", earlier, known) > 0.0
+    return np.where((agrees | ~known.any(axis=1))[:, None], earlier, known)
 
 
 def extrapolated_guess(friction: float, solved: Sequence[Solved]) -> InitialGuess | None:

@@ -73,10 +73,10 @@ def test_accuracy_of_a_newton_step_follows_the_residual() -> None:
     tolerance; it is at most a hundredth of the residual, and at least 1e-7 of it, which double precision reaches. A
     system without a load has an accuracy, too."""
     for relative in 10.0 ** np.arange(-9, 1):
-        left = _accuracy(relative * 5e3, 5e3) * relative
+        left = _accuracy(relative * 5e3, 5e3, TOLERANCE) * relative
         assert left <= max(0.2 * 200.0 * relative**2, 1e-2 * TOLERANCE, 1e-7 * relative) * (1.0 + 1e-9)
         assert 1e-7 * relative * (1.0 - 1e-9) <= left <= 1e-2 * relative * (1.0 + 1e-9)
-    assert 0.0 < _accuracy(0.0, 5e3) <= 1e-2 and 0.0 < _accuracy(1.0, 0.0) <= 1e-2
+    assert 0.0 < _accuracy(0.0, 5e3, TOLERANCE) <= 1e-2 and 0.0 < _accuracy(1.0, 0.0, TOLERANCE) <= 1e-2
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])

@@ -26,8 +26,8 @@ from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.gears.member import Member
 
 TOLERANCE = 1e-8
-"""Residual force of a position, over its load. Of Yang's pair at standard, transmission errors and losses are then those
-at 1e-12 to 1e-9 of their values, and the largest pressures too."""
+"""Residual force of a position, over its load. Transmission errors of Yang's pair at standard are then within 1e-9 of
+those at 1e-12, losses within 5e-9."""
 
 
 @dataclass(frozen=True)

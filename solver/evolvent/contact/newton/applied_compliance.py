@@ -17,7 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal
+from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal, RoughContacts
 from evolvent.contact.newton.jump_compliance import DenseCompliance, JumpCompliance
 from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent_meshes.arrays import Floats, Ints, Reals
@@ -61,7 +61,7 @@ class AppliedCompliance:
     @cached_property
     def rough(self) -> NearlyNormal:
         """Approximation of A as block matrix and modes, for preconditioning."""
-        return self.known or NearlyNormal.sum([surface.nearly() for surface in self.surfaces])
+        return self.known or NearlyNormal.sum([surface.nearly() for surface in self.surfaces]).of_few_modes()
 
     def times(self, force: Reals) -> Reals:
         """Jumps A f (m,) [mm] under forces f (m,) [N]."""
@@ -79,7 +79,8 @@ class AppliedCompliance:
 
     def normal(self) -> AppliedCompliance:
         """Compliance between normal components alone."""
-        return AppliedCompliance(tuple(s.normal() for s in self.surfaces), 1, self.rough.normal(self.k))
+        rough = self.rough.normal(self.k).of_few_modes()
+        return AppliedCompliance(tuple(s.normal() for s in self.surfaces), 1, rough)
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,11 @@ class AppliedActive:
     def inverse(self, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> BlockInverse:
         """Approximate inverse of the tangent [I + M A, −M H; Hᵀ, D], contact by contact. kept: columns of M that are
         not left out."""
-        return BlockInverse(self.whole.rough, self.unknowns, M, motions, kept)
+        return BlockInverse(self._rough, M, motions, kept)
+
+    @cached_property
+    def _rough(self) -> RoughContacts:
+        return RoughContacts.of(self.whole.rough, self.unknowns)
 
 
 COUNTED = 1e-2

@@ -21,11 +21,14 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 from evolvent.contact.newton.band_factor import BandFactor
 from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent.contact.newton.snes import NotConverged
-from evolvent_meshes.arrays import Floats, Ints, Singles
+from evolvent.contact.newton.tiled_band import TiledBand
+from evolvent_meshes.arrays import Bools, Floats, Ints, Reals
 
 TANGENTIAL = 1.2
 """Tangential over normal compliance of the surface of a half-space, (1 − ν/2)/(1 − ν) at ν = 0.3 (Johnson 1985, 3.2 and
 3.6)."""
+NEGLIGIBLE = 1e-3
+"""Amount of an orthogonal mode over the largest one, up to which the blocks are as large for loads as smooth as it."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,10 @@ class NearlyNormal:
         couplings = np.concatenate([self.couplings, other.couplings])
         return NearlyNormal(self.blocks, np.hstack([self.modes, other.modes]), couplings)
 
+    def of_few_modes(self) -> NearlyNormal:
+        """Approximate compliance with few orthogonal modes in place of U."""
+        return NearlyNormal(self.blocks, *few_modes(self.modes, self.couplings))
+
     @property
     def nbytes(self) -> int:
         """Memory [bytes]."""
@@ -79,31 +86,125 @@ class NearlyNormal:
         )
 
 
+def few_modes(modes: Floats, couplings: Floats) -> tuple[Floats, Floats]:
+    """Orthogonal modes (m, s) and amounts κ (s,) of U K Uᵀ, without those of negligible amounts. modes: U (m, r);
+    couplings: diagonal of K (r,)."""
+    s, V = np.linalg.eigh(modes.T @ modes)
+    apart = s > np.finfo(float).eps * len(s) * s.max(initial=0.0)
+    V, s = V[:, apart], np.sqrt(s[apart])  # U = (U V/s) sVᵀ, with orthonormal columns in brackets
+    κ, W = np.linalg.eigh((V * s).T @ (couplings[:, None] * (V * s)))
+    large = np.abs(κ) > NEGLIGIBLE * np.abs(κ).max(initial=0.0)
+    return modes @ (V / s @ W[:, large]), κ[large]
+
+
+@dataclass(frozen=True)
+class RoughContact:
+    """One contact, between its nodes with active unknowns, in an order that leaves few diagonals.
+
+    normal: (a,) places among the active unknowns of its nodes' normal components, in the order.
+    near: (u_i,) places of all its active unknowns.
+    rank: (u_i,) place in the order of the node of each.
+    axis: (u_i,) its component.
+    A: (a, a) rough compliance between the normal components.
+    """
+
+    normal: Ints
+    near: Ints
+    rank: Ints
+    axis: Ints
+    A: sp.csr_matrix
+
+    @staticmethod
+    def of(block: sp.csr_matrix, near: Ints, node: Ints, axis: Ints) -> RoughContact:
+        """One contact from the compliance `block` of its nodes; `node` and `axis` (u_i,) of its active unknowns."""
+        nodes = node[axis == 0]
+        A = block[nodes][:, nodes]
+        order = reverse_cuthill_mckee(A, symmetric_mode=True)
+        rank = np.full(block.shape[0], -1)
+        rank[nodes[order]] = np.arange(len(order))
+        return RoughContact(near[axis == 0][order], near, rank[node], axis, A[order][:, order])
+
+    @cached_property
+    def band(self) -> TiledBand:
+        """A as tiles."""
+        return TiledBand.of(self.A.tocsc())
+
+    def part(self, kept: Bools) -> RoughPart:
+        """The part that a tangent needs. kept: (u,) whether it keeps the column of each active unknown."""
+        tangential = (self.axis > 0) & kept[self.near]
+        if not tangential.any():
+            return RoughPart(self.normal, self.normal, self.A, self.band)
+        mine = np.flatnonzero(tangential | (self.axis == 0))
+        mine = mine[np.lexsort((self.axis[mine], self.rank[mine]))]
+        A = _of_components(self.A[self.rank[mine]], self.rank, self.axis[mine], self.axis)
+        return RoughPart(self.near[mine], self.near, A, TiledBand.of(A[:, mine].tocsc()))
+
+
+@dataclass(frozen=True)
+class RoughPart:
+    """Rough compliance of one contact from its active unknowns `near` (u_i,) to its unknowns `rows` (s_i,).
+
+    A: (s_i, u_i).
+    band: (s_i, s_i) among the rows.
+    """
+
+    rows: Ints
+    near: Ints
+    A: sp.csr_matrix
+    band: TiledBand
+
+
+@dataclass(frozen=True)
+class RoughContacts:
+    """Approximate compliance between some unknowns (u,), contact by contact.
+
+    contacts: those with some of them.
+    modes: U (u, r).
+    couplings: diagonal of K (r,) [mm/N].
+    """
+
+    contacts: tuple[RoughContact, ...]
+    modes: Floats
+    couplings: Floats
+
+    @staticmethod
+    def of(rough: NearlyNormal, unknowns: Ints) -> RoughContacts:
+        """Approximate compliance `rough` between unknowns (u,), where the normal component of their node is one too."""
+        node, axis = np.divmod(unknowns, rough.k)
+        contact = np.searchsorted(rough.starts, node, side="right") - 1
+        contact[~np.isin(node, node[axis == 0])] = -1
+        places = [(i, np.flatnonzero(contact == i)) for i in np.unique(contact[axis == 0])]
+        contacts = [RoughContact.of(rough.blocks[i], at, node[at] - rough.starts[i], axis[at]) for i, at in places]
+        return RoughContacts(tuple(contacts), rough.modes[unknowns], rough.couplings)
+
+
 class BlockInverse:
     """Approximate inverse T⁻¹ of a tangent.
 
-    rough: approximate compliance A.
-    unknowns: (u,) that are active.
+    rough: approximate compliance A between the active unknowns (u,).
     M: (u, u) among them.
     motions: H (u, r) among them and D (r, r).
-    kept: S (s,), columns of M that are not left out.
+    kept: columns of M that are not left out. S has the normal components of all nodes beside these: so the order of a
+        contact's unknowns, and its tiles, hardly ever change from step to step.
 
     Raises NotConverged where a free rigid motion meets no resistance.
     """
 
-    def __init__(
-        self, rough: NearlyNormal, unknowns: Ints, M: sp.csr_matrix, motions: FreeMotions, kept: Ints
-    ) -> None:
-        self._M = M[:, kept].tocsr()
-        node, axis = np.divmod(unknowns, rough.k)
-        contact = np.searchsorted(rough.starts, node, side="right") - 1
-        self._blocks = [
-            _Block.of(rough.blocks[i], node - rough.starts[i], np.where(contact == i, axis, -1), M, kept)
-            for i in np.unique(contact[kept])
+    def __init__(self, rough: RoughContacts, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> None:
+        is_kept = np.zeros(M.shape[0], dtype=bool)
+        is_kept[kept] = True
+        self._parts = [contact.part(is_kept) for contact in rough.contacts if is_kept[contact.near].any()]
+        rows = np.concatenate([np.zeros(0, dtype=int), *(part.rows for part in self._parts)])
+        self._ends = np.cumsum([0] + [len(part.rows) for part in self._parts])
+        self._M = _columns(M, rows, is_kept)
+        among = self._M[rows].tocsc()
+        self._factors = [
+            BandFactor(part.band, among[start:end, start:end])
+            for part, start, end in zip(self._parts, self._ends, self._ends[1:])
         ]
-        self._smooth = np.hstack([rough.modes[unknowns], -motions.jumps])
+        self._smooth = np.hstack([rough.modes, -motions.jumps])
         self._under_smooth = (self._M.T @ self._smooth).T
-        self._response = self._solved(self._smooth[kept])
+        self._response = self._solved(self._smooth[rows])
         inner = self._under_smooth @ self._response
         count = len(rough.couplings)
         inner[np.diag_indices(count)] += 1.0 / rough.couplings
@@ -117,57 +218,33 @@ class BlockInverse:
     def solve(self, right: Floats) -> Floats:
         """Solution (f, δ) (u + r,) for a right-hand side (b, c)."""
         b, load = np.split(right, [self._M.shape[0]])
-        z = np.zeros(self._M.shape[1])
-        for block in self._blocks:
-            z[block.kept] = block.solved(block.moved(b))
+        local, moved = b.astype(np.float32, copy=False), np.empty(self._ends[-1], dtype=np.float32)
+        for part, start, end in zip(self._parts, self._ends, self._ends[1:]):
+            moved[start:end] = part.A @ local[part.near]
+        z = self._solved(moved)
         known = self._smooth.T @ b - self._under_smooth @ z
         known[len(known) - len(load) :] += load
         v = self._scale * (self._inner @ (self._scale * known))
         z += self._response @ v
         return np.concatenate([b - self._M @ z, v[len(v) - len(load) :]]).astype(right.dtype)
 
-    def _solved(self, right: Floats) -> Floats:
-        """Solution (I + A_b M_S)⁻¹ right of all blocks, (s, c)."""
-        result = np.zeros_like(right)
-        for block in self._blocks:
-            result[block.kept] = block.solved(right[block.kept].astype(np.float32))
+    def _solved(self, right: Reals) -> Floats:
+        """Solution (I + A_b M_S)⁻¹ right of all contacts, (s,) or (s, c), good to single precision."""
+        result = np.empty(right.shape)
+        for factor, start, end in zip(self._factors, self._ends, self._ends[1:]):
+            result[start:end] = factor.solve(right[start:end].astype(np.float32, copy=False))
         return result
 
 
-@dataclass(frozen=True)
-class _Block:
-    """One contact.
-
-    kept: (s_i,) its unknowns among S.
-    near: (u_i,) its active unknowns.
-    A: (s_i, u_i) rough compliance between them.
-    factor: of I + A_b M_S.
-    """
-
-    kept: Ints
-    near: Ints
-    A: sp.csr_matrix
-    factor: BandFactor
-
-    @staticmethod
-    def of(block: sp.csr_matrix, node: Ints, axis: Ints, M: sp.csr_matrix, kept: Ints) -> _Block:
-        """One contact with the factor of its block. block: of its nodes. node: of each active unknown; axis: component,
-        −1 where it is of another contact."""
-        near, mine = np.flatnonzero(axis >= 0), np.flatnonzero(axis[kept] >= 0)
-        A = block[node[kept[mine]]]
-        mine = mine[reverse_cuthill_mckee(A[:, node[kept[mine]]], symmetric_mode=True)]
-        rows = kept[mine]
-        A = _of_components(block[node[rows]], node[near], axis[rows], axis[near])
-        factor = BandFactor(A[:, np.searchsorted(near, rows)], M[rows][:, rows].tocsc())
-        return _Block(mine, near, A, factor)
-
-    def moved(self, b: Floats) -> Singles:
-        """Jumps A_b b (s_i,) for forces (u,) on all active unknowns."""
-        return np.asarray(self.A @ b[self.near].astype(np.float32))
-
-    def solved(self, right: Singles) -> Singles:
-        """Solution (I + A_b M_S)⁻¹ right of the block, (s_i, ...)."""
-        return self.factor.solve(right)
+def _columns(M: sp.csr_matrix, rows: Ints, kept: Bools) -> sp.csr_matrix:
+    """Columns `rows` (s,) of M, those zero that are not kept."""
+    place = np.full(M.shape[1], -1, dtype=M.indices.dtype)
+    place[rows] = np.arange(len(rows))
+    place[~kept] = -1
+    column = place[M.indices]
+    used = column >= 0
+    ends = np.append(0, np.cumsum(used))[M.indptr]
+    return sp.csr_matrix((M.data[used], column[used], ends), (M.shape[0], len(rows)))
 
 
 def _of_components(block: sp.csr_matrix, node: Ints, rows: Ints, columns: Ints) -> sp.csr_matrix:

@@ -12,7 +12,7 @@ import pytest
 import scipy.sparse as sp
 
 from evolvent.contact.newton.applied_compliance import AppliedCompliance, summed, with_modes
-from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal
+from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal, RoughContacts, few_modes
 from evolvent.contact.newton.jump_compliance import DenseCompliance
 from evolvent.contact.newton.newton_steps import NewtonSteps
 from evolvent.contact.newton.reduced_tangent import FreeMotions
@@ -107,13 +107,36 @@ def test_rough_inverse_is_exact_without_friction(resistance: float) -> None:
     """k = 1, where the rough compliance is A itself: the inverse to single precision. Other blocks are left out."""
     T = tangent(applied(1), 1, resistance=resistance)
     unknowns = np.flatnonzero(touching())
-    rough = applied(1).rough
+    rough = RoughContacts.of(applied(1).rough, unknowns)
     motions = T.motions.of(unknowns, float)
-    inverse = BlockInverse(rough, unknowns, T.M[unknowns][:, unknowns], motions, np.arange(len(unknowns)))
+    inverse = BlockInverse(rough, T.M[unknowns][:, unknowns], motions, np.arange(len(unknowns)))
     A, M, H = exact(1)[np.ix_(unknowns, unknowns)], T.M[unknowns][:, unknowns].toarray(), motions.jumps
     dense = np.block([[np.eye(len(A)) + M @ A, -M @ H], [H.T, motions.resistance]])
     right = RNG(2).normal(size=len(unknowns) + 1)
     assert dense @ inverse.solve(right) == pytest.approx(right, abs=1e-4)
+
+
+def test_rough_inverse_where_nothing_touches() -> None:
+    """M = 0: f = b, and what resists the free motion takes what they leave of the load."""
+    unknowns, H = np.arange(3, 7), np.ones((4, 1))
+    rough = RoughContacts.of(applied(1).rough, unknowns)
+    motions, none = FreeMotions(H, np.array([[2.0]])), np.zeros(0, dtype=int)
+    inverse = BlockInverse(rough, sp.csr_matrix((4, 4), dtype=np.float32), motions, none)
+    found = inverse.solve(np.array([1.0, 2.0, 3.0, 4.0, 30.0]))
+    assert found == pytest.approx([1.0, 2.0, 3.0, 4.0, 10.0], rel=1e-6)
+
+
+def test_few_modes_are_those_of_large_amounts() -> None:
+    """Modes of which two are alike, one is nought and one is small, some amounts negative: two orthogonal ones are left
+    and the sum U K Uᵀ is good to what was left out."""
+    random = RNG(3)
+    a, b, c = random.normal(size=(3, N))
+    modes, couplings = np.stack([a, b, 2.0 * b, np.zeros(N), c], axis=1), np.array([1.0, -3.0, 0.5, 1.0, 1e-5])
+    found, amounts = few_modes(modes, couplings)
+    assert found.shape == (N, 2)
+    assert found.T @ found == pytest.approx(np.eye(2), abs=1e-12)
+    left = modes * couplings @ modes.T - found * amounts @ found.T
+    assert np.abs(left).max() <= 1.1 * 1e-5 * np.abs(np.outer(c, c)).max()
 
 
 def test_products_and_normal_components() -> None:

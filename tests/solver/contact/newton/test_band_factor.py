@@ -8,6 +8,7 @@ import scipy.sparse as sp
 
 from evolvent.contact.newton.band_factor import BandFactor
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.newton.tiled_band import TiledBand
 
 N = 400
 
@@ -28,7 +29,7 @@ def test_inverse(columns: tuple[int, ...]) -> None:
     empty = sp.csr_matrix((N, N), dtype=np.float32)
     right = np.random.default_rng(4).normal(size=(N, *columns)).astype(np.float32)
     for left, middle in ((A, M), (A, empty), (empty, M)):
-        found = BandFactor(left.tocsr(), middle.tocsc()).solve(right)
+        found = BandFactor(TiledBand.of(left.tocsc()), middle.tocsc()).solve(right)
         assert found + left @ (middle @ found) == pytest.approx(right, abs=1e-4)
 
 
@@ -36,4 +37,4 @@ def test_singular_matrix_is_an_error() -> None:
     """I + A M with a zero row: NotConverged."""
     one = sp.csr_matrix(([np.float32(1.0)], ([0], [0])), (N, N))
     with pytest.raises(NotConverged, match="singular"):
-        BandFactor(one, -one.tocsc())
+        BandFactor(TiledBand.of(one.tocsc()), -one.tocsc())

@@ -8,16 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-import scipy.sparse as sp
-from numpy.typing import NDArray
 
-from evolvent.gears.two_level.strips import StripCorrection, first_nodes, node_offset, node_places, turned
+from evolvent.gears.two_level.normal_tiles import NormalTiles
+from evolvent.gears.two_level.strips import Indices, LoadedStrips, StripCorrection, turned
 from evolvent_meshes.arrays import Floats, Ints, Singles
-
-Indices = NDArray[np.int32]
-"""32-bit indices, half the memory of `Ints`."""
 
 
 @dataclass(frozen=True)
@@ -44,31 +41,58 @@ class NormalStrips:
             changes.append(change.reshape(q * p, Q * P).astype(np.float32))
         return NormalStrips(correction, tuple(changes))
 
-    def among(self, nodes: Ints, apart: float) -> sp.csr_matrix:
-        """Normal correction (k, k) [mm/N] between different nodes (k,), no more than so many coarse layers apart along
+    def among(self, loaded: LoadedStrips, apart: float) -> NormalTiles:
+        """Normal correction [mm/N] between the nodes (k,) of `loaded`, no more than so many coarse layers apart along
         the face."""
-        number = np.full(self.correction.size, -1, dtype=np.int32)
-        number[nodes] = np.arange(len(nodes), dtype=np.int32)
-        parts = list(self._parts(number[self.correction.numbers], apart * self.correction.per_layer))
-        rows, columns, values = (np.concatenate(each) for each in zip(*parts, strict=True))
-        return sp.csr_matrix((values, (rows, columns)), (len(nodes), len(nodes)))
+        order, limit = np.argsort(loaded.place), int(apart * self.correction.per_layer)
+        place, number = loaded.place[order], np.full(len(order) + 1, -1, dtype=np.int32)
+        number[order] = np.arange(len(order), dtype=np.int32)
+        starts, first, ends = self._tiles(place, limit)
+        widths, heights = ends - first, np.diff(starts)
+        offsets = np.append(0, np.cumsum(widths * heights))
+        row = np.arange(len(place)) - np.repeat(starts[:-1], heights)
+        base = np.repeat(offsets[:-1] - first, heights) + row * np.repeat(widths, heights)
+        values = np.zeros(offsets[-1], dtype=np.float32)
+        for rows, columns, change in self._entries(loaded, number, limit):
+            values[base[rows] + columns] = change
+        tiles = [values[a:b].reshape(-1, w) for a, b, w in zip(offsets, offsets[1:], widths)]
+        return NormalTiles(number[:-1].astype(np.int64), starts, first, tuple(tiles))
 
-    def _parts(self, number: Indices, apart: float) -> Iterator[tuple[Indices, Indices, Singles]]:
-        """Rows, columns and values of each strip. number: (levels, rows) of the wanted nodes, −1 of others. apart:
-        in levels of nodes."""
-        correction, number_at, per_row = self.correction, number.ravel(), number.shape[1]
-        wanted = (number >= 0)[None]
-        for strip, change in zip(correction.strips, self.changes):
-            first = first_nodes(strip, wanted, correction.per_layer)
-            sources, moved = (
-                number_at[node_places(first + node_offset(corner, per_row), size, per_row)]
-                for corner, size in ((strip.source, strip.sources), (strip.start, strip.moved))
-            )
-            rise = _levels(strip.source, strip.sources)[:, None] - _levels(strip.start, strip.moved)
-            both = (sources >= 0)[:, :, None] & (moved >= 0)[:, None] & (np.abs(rise) <= apart)
-            of_all = sources[:, :, None], moved[:, None], change[None]
+    def _tiles(self, place: Ints, limit: int) -> tuple[Ints, Ints, Ints]:
+        """First row of each tile and their number, first column and last + 1 of each: tiles are as many levels high as
+        a layer, and have `limit` more below and above. place: (k,) sorted."""
+        levels, rows = self.correction.numbers.shape
+        tooth, level = np.divmod(place // rows, levels)
+        layer = level // self.correction.per_layer
+        starts = np.flatnonzero(np.diff(tooth * levels + layer, prepend=-1))
+        low = layer[starts] * self.correction.per_layer
+        bottom, top = np.maximum(low - limit, 0), np.minimum(low + self.correction.per_layer + limit, levels)
+        first, ends = (np.searchsorted(place, (tooth[starts] * levels + each) * rows) for each in (bottom, top))
+        return np.append(starts, len(place)), first, ends
+
+    def _entries(self, loaded: LoadedStrips, number: Indices, limit: int) -> Iterator[tuple[Indices, Indices, Singles]]:
+        """Rows, columns and values of each strip, between nodes up to `limit` levels apart. number: (k + 1,) of the
+        nodes in the tiles' order, −1 for none."""
+        start = end = 0
+        for strip, count in zip(loaded.strips, loaded.counts):
+            change = self._change[id(strip)]
+            q, p = change.shape
+            sources = number[loaded.sources[start : start + count * q]].reshape(count, q)
+            moved = number[loaded.around[end : end + count * p]].reshape(count, p)
+            start, end = start + count * q, end + count * p
+            rise = np.abs(_levels(strip.source, strip.sources)[:, None] - _levels(strip.start, strip.moved))
+            used, near = np.flatnonzero((sources >= 0).any(axis=0)), np.flatnonzero((moved >= 0).any(axis=0))
+            both = (rise <= limit)[np.ix_(used, near)]
+            sources, moved = sources[:, used], moved[:, near]
+            both = (sources >= 0)[:, :, None] & (moved >= 0)[:, None] & both
+            of_all = sources[:, :, None], moved[:, None], change[np.ix_(used, near)][None]
             rows, columns, values = (np.broadcast_to(each, both.shape)[both] for each in of_all)
             yield rows, columns, values
+
+    @cached_property
+    def _change(self) -> dict[int, Singles]:
+        """The matrix of each strip, by its identity."""
+        return {id(strip): change for strip, change in zip(self.correction.strips, self.changes)}
 
 
 def _levels(corner: tuple[int, int], size: tuple[int, int]) -> Ints:

@@ -6,18 +6,17 @@ coupling of teeth are modes of all components. Good to a few per cent.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from itertools import pairwise
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import block_diag, cholesky, solve_triangular
 
-from evolvent.contact.newton.block_inverse import NearlyNormal
+from evolvent.contact.newton.block_inverse import NearlyNormal, few_modes
 from evolvent.fem.surface import Surface
-from evolvent.gears.two_level.flank_window import FlankWindow, ToothWindow
+from evolvent.gears.two_level.flank_window import FlankWindow
 from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent_meshes.arrays import Floats, Ints, Singles
 
@@ -30,6 +29,11 @@ COUPLED = 3e-3
 TOGETHER = 250
 """Largest number of nodes of a group; those of neighbouring groups are coupled. With 1000, 500, 250, 120, the first
 position of 23/81 teeth, 2.5 N·m on 5 mm of face, takes 504, 506, 510, 598 products and 23, 13, 7, 4 s of factoring."""
+SPARSE = 20.0
+"""How much longer an entry of a sparse matrix takes than one of a dense matrix in a product."""
+
+Part = Callable[[tuple[int, int], tuple[int, int]], Singles]
+"""Part of a matrix: rows and columns from the first to before the last of each pair."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +52,8 @@ class RoughFlanks:
         coupling, size = window.ring.leading(COUPLED)
         bending = [self._bending(t.nodes[0], C) for t, C in zip(window.teeth, window.ring.own)]
         modes = np.hstack([coupling, block_diag(*bending)])
-        sizes = np.append(size, np.ones(modes.shape[1] - len(size)))
-        blocks = [self._block(*each) for each in zip(window.teeth, window.ring.own, bending)]
-        return NearlyNormal(tuple(blocks), window.smooth(modes), sizes)
+        modes, sizes = few_modes(modes, np.append(size, np.ones(modes.shape[1] - len(size))))
+        return NearlyNormal(tuple(self._blocks(window, bending)), window.smooth(modes), sizes)
 
     def _bending(self, nodes: Ints, C: Floats) -> Floats:
         """U (c·3, b): how a tooth with compliance C (c·3, c·3) between some coarse nodes moves under normal loads that
@@ -62,43 +65,42 @@ class RoughFlanks:
         moved = C @ P
         return np.asarray(solve_triangular(cholesky(P.T @ moved, lower=True), moved.T, lower=True).T)
 
-    def _block(self, tooth: ToothWindow, C: Floats, bending: Floats) -> sp.csr_matrix:
-        """Normal compliance (n, n) of a tooth's part of the contact without its bending, between nodes that are near
+    def _blocks(self, window: FlankWindow, bending: Sequence[Floats]) -> Iterator[sp.csr_matrix]:
+        """Normal compliance (n, n) of each tooth's part of the contact without its bending, between nodes that are near
         along the face [mm/N]. Nodes further apart hardly change how well it preconditions."""
         lattice = self.levels[-1].correction.lattice
-        x = tooth.map.opposite(lattice.at(tooth.nodes[-1]))
+        points = [tooth.map.opposite(lattice.at(tooth.nodes[-1])) for tooth in window.teeth]
         layer = float(np.diff(self._heights).max())
-        near, members = _groups(x[:, 2], layer, layer / self.levels[-1].correction.per_layer)
-        parts = self._parts(lattice.interpolation(x), tooth, C, bending, near / layer)
-        rows, columns, values = [], [], []
-        for first, second in [*zip(members, members), *pairwise(members)]:
-            dense = np.sum([_between(N[first], S, N[second]) for N, S in parts], axis=0)
-            i, j = np.nonzero(np.abs(x[first, 2][:, None] - x[second, 2]) <= near)
-            rows.append(first[i])
-            columns.append(second[j])
-            values.append(dense[i, j] if first is not second else 0.5 * dense[i, j])
-        half = sp.csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), (len(x),) * 2)
-        return (half + half.T).tocsr()
+        least = layer / self.levels[-1].correction.per_layer
+        groups = [_groups(x[:, 2], layer, least) for x in points]
+        apart = max(near for near, _ in groups) / layer
+        tiles = [  # nodes of a cell at either end of what is near count too
+            level.normal.among(at.strips, apart + 4 / level.correction.per_layer)
+            for level, at in zip(self.levels, window.levels)
+        ]
+        starts = np.zeros(len(self.levels), dtype=int)  # of a tooth's nodes
+        for tooth, C, U, x, (near, members) in zip(window.teeth, window.ring.own, bending, points, groups):
+            parts: list[tuple[sp.csr_matrix, Part]] = []
+            N = lattice.interpolation(x)
+            for level, among, nodes, start in list(zip(self.levels, tiles, tooth.nodes[1:], starts))[::-1]:
+                number = among.number[start : start + len(nodes)]
+                parts.append((_of_columns(N, nodes, number, len(among.number)), among.part))
+                N = (N @ level.transfer).tocsr()
+            starts += [len(nodes) for nodes in tooth.nodes[1:]]
+            order = np.argsort(self.flank.points[tooth.nodes[0], 2], kind="stable")
+            rest = self._rest(tooth.nodes[0], C, U)[np.ix_(order, order)]
+            number = np.arange(len(order))
+            parts.append((_of_columns(N, tooth.nodes[0][order], number, len(rest)), partial(_part, rest)))
+            yield _near_rows(x[:, 2], near, members, parts)
 
-    def _parts(
-        self, N: sp.csr_matrix, tooth: ToothWindow, C: Floats, bending: Floats, near: float
-    ) -> list[tuple[sp.csr_matrix, sp.csr_matrix | Singles]]:
-        """N_l, S_l of each level and of the coarse flank: the normal compliance is Σ N_l S_l N_lᵀ. N: from the finest
-        nodes. near: how many coarse layers nodes are apart at most; those of a cell at either end count too."""
-        parts: list[tuple[sp.csr_matrix, sp.csr_matrix | Singles]] = []
-        for level in reversed(self.levels):
-            used = np.unique(N.indices)
-            within = near + 4 / level.correction.per_layer
-            parts.append((N[:, used].astype(np.float32).tocsr(), level.normal.among(used, within)))
-            N = (N @ level.transfer).tocsr()
-        place = np.full(N.shape[1], -1)
-        place[tooth.nodes[0]] = np.arange(len(tooth.nodes[0]))
-        used = np.unique(N.indices)
-        k, n = place[used], self.flank.normals[used]
-        among = C.reshape(len(tooth.nodes[0]), 3, -1, 3)[k][:, :, k]
-        U = np.einsum("iab,ia->ib", bending.reshape(-1, 3, bending.shape[1])[k], n)
-        rest = np.einsum("iajb,ia,jb->ij", among, n, n, optimize=True) - U @ U.T
-        return [*parts, (N[:, used].astype(np.float32).tocsr(), rest.astype(np.float32))]
+    def _rest(self, nodes: Ints, C: Floats, bending: Floats) -> Singles:
+        """Normal compliance (c, c) [mm/N] between some coarse nodes (c,) of a tooth without its bending. C (c·3, c·3):
+        of all components."""
+        n = self.flank.normals[nodes]
+        U = np.einsum("iab,ia->ib", bending.reshape(-1, 3, bending.shape[1]), n)
+        half = np.einsum("iaj,ia->ij", C.reshape(len(n), 3, -1), n)
+        rest = np.einsum("ijb,jb->ij", half.reshape(len(n), -1, 3), n) - U @ U.T
+        return np.asarray(rest, dtype=np.float32)
 
     @cached_property
     def _heights(self) -> Floats:
@@ -117,9 +119,56 @@ def _groups(z: Floats, near: float, least: float) -> tuple[float, list[Ints]]:
         near *= 0.5
 
 
-def _between(N: sp.csr_matrix, S: sp.csr_matrix | Singles, M: sp.csr_matrix) -> Singles:
+def _near_rows(
+    z: Floats, near: float, members: Sequence[Ints], parts: Sequence[tuple[sp.csr_matrix, Part]]
+) -> sp.csr_matrix:
+    """Sum Σ N S Nᵀ (n, n) of the parts N, S between nodes with heights z (n,) that are `near` at most [mm], group by
+    group."""
+    none = np.zeros(0, dtype=np.int64)
+    below, under = np.zeros((0, len(members[0])), dtype=np.float32), none
+    data, indices, counts = [], [], []
+    for here, above in zip(members, [*members[1:], none]):
+        both = np.concatenate([here, above])
+        dense = np.sum([_between(N[here], S, N[both]) for N, S in parts], axis=0)
+        row, columns = np.hstack([below.T, dense]), np.concatenate([under, both])
+        is_near = np.abs(z[here][:, None] - z[columns]) <= near
+        data.append(row[is_near])
+        indices.append(np.broadcast_to(columns, row.shape)[is_near])
+        counts.append(np.count_nonzero(is_near, axis=1))
+        below, under = dense[:, len(here) :], here
+    ends = np.append(0, np.cumsum(np.concatenate(counts)))
+    grouped = sp.csr_matrix((np.concatenate(data), np.concatenate(indices), ends), (len(z), len(z)))
+    return grouped[np.argsort(np.concatenate(members))]
+
+
+def _between(N: sp.csr_matrix, S: Part, M: sp.csr_matrix) -> Singles:
     """Product N S Mᵀ as a dense matrix."""
-    rows, columns = np.unique(N.indices), np.unique(M.indices)
-    among = S[rows][:, columns]
-    dense = among.toarray() if sp.issparse(among) else among
-    return np.asarray(N[:, rows] @ (M[:, columns] @ dense.T).T)
+    if not N.nnz:
+        return np.zeros((N.shape[0], M.shape[0]), dtype=np.float32)
+    (N, rows), (M, columns) = _narrowed(N), _narrowed(M)
+    return np.asarray(_times(M, _times(N, S(rows, columns)).T).T)
+
+
+def _times(N: sp.csr_matrix, dense: Singles) -> Singles:
+    """Product with a dense matrix."""
+    if N.shape[0] * N.shape[1] < SPARSE * N.nnz:
+        return np.asarray(N.toarray() @ dense)
+    return np.asarray(N @ np.ascontiguousarray(dense))
+
+
+def _narrowed(N: sp.csr_matrix) -> tuple[sp.csr_matrix, tuple[int, int]]:
+    """N from its first to its last column that is not zero; number of the first and of the one after the last."""
+    low, high = int(N.indices.min()), int(N.indices.max()) + 1
+    return sp.csr_matrix((N.data, N.indices - low, N.indptr), (N.shape[0], high - low)), (low, high)
+
+
+def _of_columns(N: sp.csr_matrix, nodes: Ints, number: Ints, size: int) -> sp.csr_matrix:
+    """N in single precision from `size` values; `number` (k,) is that of each of its nodes (k,), others have none."""
+    place = np.zeros(N.shape[1], dtype=N.indices.dtype)
+    place[nodes] = number
+    return sp.csr_matrix((N.data.astype(np.float32), place[N.indices], N.indptr), (N.shape[0], size))
+
+
+def _part(whole: Singles, rows: tuple[int, int], columns: tuple[int, int]) -> Singles:
+    """Part of a matrix."""
+    return whole[slice(*rows), slice(*columns)]

@@ -14,10 +14,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.symmetric_strips import Strip, symmetric_strips
-from evolvent_meshes.arrays import Bools, Floats, Ints, Reals
+from evolvent_meshes.arrays import Bools, Floats, Ints, Reals, Singles
+
+Indices = NDArray[np.int32]
+"""32-bit indices, half the memory of `Ints`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +50,13 @@ class StripCorrection:
         """Numbers (levels, rows) of the nodes."""
         return np.ascontiguousarray(self.lattice.nodes.T)
 
+    @cached_property
+    def place(self) -> Indices:
+        """Place (n,) of each node among `numbers`."""
+        place = np.empty(self.size, dtype=np.int32)
+        place[self.numbers.ravel()] = np.arange(self.size, dtype=np.int32)
+        return place
+
     @property
     def size(self) -> int:
         """Number n of nodes."""
@@ -61,52 +72,51 @@ class LoadedStrips:
     """Correction S between some nodes (k,) of some teeth: the patches that have some of them. It does not couple teeth,
     but they share the products.
 
-    size: of the lattices of all teeth together.
-    place: (k,) the nodes in them.
+    place: (k,) the nodes in the lattices of all teeth together.
     angle: (k,) of their layers' frames [rad].
     strips: those with such patches.
     counts: how many of each.
-    sources: places of the nodes of all these patches, one patch after the other.
-    around: places of the nodes with forces that move them.
+    sources: nodes of all these patches, one patch after the other, by their index among the k; k is any other node.
+    around: nodes with forces that move them, likewise.
     """
 
-    size: int
     place: Ints
     angle: Floats
     strips: tuple[Strip, ...]
     counts: tuple[int, ...]
-    sources: Ints
-    around: Ints
+    sources: Indices
+    around: Indices
 
     @staticmethod
     def of(whole: StripCorrection, nodes: Sequence[Ints]) -> LoadedStrips:
         """Correction between some nodes. nodes: of each tooth, different ones."""
-        place = np.empty(whole.size, dtype=np.int32)
-        place[whole.numbers.ravel()] = np.arange(whole.size)
-        own = np.concatenate([place[each] for each in nodes])
+        own = np.concatenate([whole.place[each] for each in nodes])
         tooth = np.repeat(np.arange(len(nodes), dtype=np.int32), [len(each) for each in nodes])
         loaded = np.zeros((len(nodes), *whole.numbers.shape), dtype=bool)
         loaded.reshape(len(nodes), -1)[tooth, own] = True
         found = [(strip, first_nodes(strip, loaded, whole.per_layer)) for strip in whole.strips]
         used = [(strip, first) for strip, first in found if len(first)]
-        rows = whole.numbers.shape[1]
+        rows, place = whole.numbers.shape[1], own + whole.size * tooth
+        index = np.full(len(nodes) * whole.size, len(place), dtype=np.int32)
+        index[place] = np.arange(len(place), dtype=np.int32)
         return LoadedStrips(
-            len(nodes) * whole.size, own + whole.size * tooth, whole.angle[own // rows],
+            place, whole.angle[own // rows],
             tuple(strip for strip, _ in used), tuple(len(first) for _, first in used),
-            _places([(first + node_offset(s.source, rows), s.sources) for s, first in used], rows),
-            _places([(first + node_offset(s.start, rows), s.moved) for s, first in used], rows),
+            index[_places([(first + node_offset(s.source, rows), s.sources) for s, first in used], rows)],
+            index[_places([(first + node_offset(s.start, rows), s.moved) for s, first in used], rows)],
         )
 
     @property
     def nbytes(self) -> int:
         """Memory [bytes] without the patches' responses, which belong to the flank."""
-        return sum(each.nbytes for each in (self.place, self.angle, self.sources, self.around))
+        return sum(each.nbytes for each in (self.place, self.angle, self._at, self.sources, self.around))
 
     def times(self, forces: Reals) -> Reals:
         """Displacements (k, 3) [mm] under forces (k, 3) [N] on all nodes, tooth by tooth, each in the frame of tooth 0.
         Of the precision of the forces."""
-        f = np.zeros((self.size, 3), forces.dtype)
-        f[self.place] = turned(forces, -self.angle)
+        c, s = self._single_turns if forces.dtype == np.float32 else self._turns
+        f = np.zeros((len(forces) + 1, 3), forces.dtype)
+        f[:-1] = _turned(forces, c, -s)
         near = f.take(self.around, axis=0).ravel()  # four times as fast as indexing
         moved = np.empty(3 * len(self.sources), forces.dtype)
         start = end = 0
@@ -116,9 +126,25 @@ class LoadedStrips:
             change = strip.change.astype(forces.dtype, copy=False)
             np.matmul(loads, change.T, out=moved[end : end + count * rows].reshape(count, rows))
             start, end = start + count * columns, end + count * rows
-        u = np.zeros_like(f)
-        u[self.sources] = moved.reshape(-1, 3)
-        return turned(u[self.place], self.angle).astype(forces.dtype, copy=False)
+        return _turned(moved.reshape(-1, 3).take(self._at, axis=0), c, s)
+
+    @cached_property
+    def _at(self) -> Indices:
+        """Where each node (k,) is among the sources, which have it once."""
+        at = np.empty(len(self.place) + 1, dtype=np.int32)
+        at[self.sources] = np.arange(len(self.sources), dtype=np.int32)
+        return at[:-1]
+
+    @cached_property
+    def _turns(self) -> tuple[Floats, Floats]:
+        """Cosine and sine (k,) of the angles."""
+        return np.cos(self.angle), np.sin(self.angle)
+
+    @cached_property
+    def _single_turns(self) -> tuple[Singles, Singles]:
+        """Cosine and sine (k,) of the angles in single precision."""
+        c, s = self._turns
+        return c.astype(np.float32), s.astype(np.float32)
 
 
 def first_nodes(strip: Strip, loaded: Bools, per_layer: int) -> Ints:
@@ -144,14 +170,20 @@ def node_places(first: Ints, size: tuple[int, int], rows: int) -> Ints:
     return np.asarray(first[:, None] + (levels * rows + across).ravel())
 
 
-def _places(patches: Sequence[tuple[Ints, tuple[int, int]]], rows: int) -> Ints:
+def _places(patches: Sequence[tuple[Ints, tuple[int, int]]], rows: int) -> Indices:
     """Places of all nodes of patches, given by their first nodes (m,) and their levels and rows."""
     parts = [node_places(first, size, rows).ravel() for first, size in patches]
     return np.concatenate(parts).astype(np.int32) if parts else np.zeros(0, dtype=np.int32)
 
 
-def turned(vectors: Reals, angle: Floats) -> Reals:
+def turned(vectors: Floats, angle: Floats) -> Floats:
     """Vectors (..., 3) turned about z by angles (...) [rad]."""
+    return np.asarray(_turned(vectors, np.cos(angle), np.sin(angle)))
+
+
+def _turned(vectors: Reals, c: Reals, s: Reals) -> Reals:
+    """Vectors (..., 3) turned about z by angles with cosines c and sines s (...)."""
     x, y, z = np.moveaxis(vectors, -1, 0)
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+    result = np.empty(vectors.shape, vectors.dtype)
+    result[..., 0], result[..., 1], result[..., 2] = c * x - s * y, s * x + c * y, z
+    return result

@@ -10,7 +10,8 @@ from tests.support.random_strips import random_correction
 
 def test_normal_components_between_some_nodes() -> None:
     """nᵀ S n with normals that turn with the layers, in single precision: between all nodes, between some of them in
-    any order, and between one alone; of all, and of those that are half a layer apart at most."""
+    any order, and between one alone, with another tooth's beside them; of all, and of those that are half a layer
+    apart at most."""
     random = np.random.default_rng(1)
     correction = random_correction(random, 5, 6)
     strips = correction.strips
@@ -26,7 +27,13 @@ def test_normal_components_between_some_nodes() -> None:
     level = np.empty(strips.size, dtype=int)
     level[strips.numbers] = np.arange(len(strips.numbers))[:, None]
     near = np.abs(level[:, None] - level) <= strips.per_layer / 2
-    for apart, S_n in ((np.inf, wanted), (0.5, np.where(near, wanted, 0.0))):
+    for apart, S_n in ((99.0, wanted), (0.5, np.where(near, wanted, 0.0))):
         for nodes in (np.arange(strips.size), random.permutation(strips.size)[:23], np.array([7])):
-            found = normal.among(nodes, apart).toarray()
-            assert np.abs(found - S_n[np.ix_(nodes, nodes)]).max() < 1e-6 * np.abs(wanted).max()
+            other = random.permutation(strips.size)[:9]
+            tiles = normal.among(strips.among([nodes, other]), apart)
+            size, k = len(nodes) + len(other), len(nodes)
+            whole = tiles.part((0, size), (0, size))
+            found, both = whole[np.ix_(tiles.number, tiles.number)], np.concatenate([nodes, other])
+            blocks = np.where((np.arange(size)[:, None] < k) == (np.arange(size) < k), S_n[np.ix_(both, both)], 0.0)
+            assert np.abs(found - blocks).max() < 1e-6 * np.abs(wanted).max()
+            assert np.array_equal(tiles.part((1, size), (0, size - 1)), whole[1:, :-1])

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from evidence import mutations
-from evidence.benchmarks.accuracy import face_load, transient_bar_costs, transient_bars
+from evidence.benchmarks.accuracy import companion_positions, face_load, transient_bar_costs, transient_bars
 from evidence.benchmarks.cache import kept, modifications
 from evidence.benchmarks.line import accuracy, edges, face_ends, friction, starts
 from evidence.checkout import ROOT
@@ -48,7 +48,9 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "transient_method.md": {"calculix": blow.table(docs), "smeared": he_transient.smeared(docs)},
         docs / "computation.md": {"abilities": abilities.table(docs)},
         docs / "checks.md": {"repeats": repeats.said(docs)},
-        docs / "evidence.md": {"bars": bars, "face-load": face_load.table(docs)},
+        docs / "evidence.md": {
+            "bars": bars, "face-load": face_load.table(docs), "companion": companion_positions.table(docs),
+        },
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "cache.md": {"kept": kept.said(docs), "modifications": modifications.said(docs)},
         docs / "line_contact.md": {

@@ -19,11 +19,14 @@ from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.sweep.companion_pitch import companion_pitch
+from evolvent.gears.sweep.pitch_sweep import Pitch
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.error_bars.estimation import errors_between
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.kept_pitch import pitch_of
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -113,10 +116,10 @@ def measure_bars(problem: BarProblem) -> list[BarRow]:
     rows = []
     for case in problem.cases:
         scene = problem.with_mesh(case)
-        run, coarse = solved(scene), solved(scene, companion_mesh)
+        run, coarse = solved(scene), solved_companion(scene)
         bars = [astuple(errors) for errors in errors_between(run, coarse)]
-        values, exact, nearly = (_figures(each, run.inner_path) for each in (run, *references))
-        rows += _rows(", ".join((problem.name, *case)), run.frictions, values, bars, exact, nearly)
+        values, exact, nearly = (figures_of(each, run.inner_path) for each in (run, *references))
+        rows += bar_rows(", ".join((problem.name, *case)), run.frictions, values, bars, exact, nearly)
     return [row for row in rows if not known(row)]
 
 
@@ -133,7 +136,7 @@ def hit_rate(rows: Sequence[BarRow]) -> float:
     return sum(row.inside for row in rows) / len(rows)
 
 
-def _rows(
+def bar_rows(
     case: str, frictions: Sequence[float], values: Sequence[Sequence[float]], bars: Sequence[Sequence[float]],
     exact: Sequence[Sequence[float]], nearly: Sequence[Sequence[float]],
 ) -> list[BarRow]:
@@ -145,11 +148,16 @@ def _rows(
     ]
 
 
-def solved(scene: Scene, mesh: Mesher = run_mesh) -> RunData:
-    """A run on this rank alone. mesh: of a gear's sector."""
-    run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, mesh)
+def solved(scene: Scene, mesh: Mesher = run_mesh, pitch: Pitch | None = None) -> RunData:
+    """A run on this rank alone. mesh: of a gear's sector. pitch: the positions, None for those of the scene."""
+    run = solved_run(scene, pitch or pitch_of(scene), MPI.COMM_SELF, mesh)
     assert run is not None
     return run
+
+
+def solved_companion(scene: Scene) -> RunData:
+    """The coarse companion of a scene's run, at the positions at which a run has it."""
+    return solved(scene, companion_mesh, companion_pitch(pitch_of(scene), gear_problem(scene).is_plane))
 
 
 def _reference(problem: BarProblem, halvings: int) -> RunData:
@@ -180,7 +188,7 @@ def _finer_body(resolution: SectorResolution) -> SectorResolution:
     )
 
 
-def _figures(run: RunData, inner: tuple[float, float]) -> list[list[float]]:
+def figures_of(run: RunData, inner: tuple[float, float]) -> list[list[float]]:
     """(friction coefficients, figures). inner: between which roll distances pressures are looked at, the tip-edge zones
     of the mesh that is judged, as its figures are of what lies between them."""
     return [[float(getattr(row, name)) for name in FIGURES] for row in friction_rows(run, inner)]

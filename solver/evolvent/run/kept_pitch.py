@@ -16,11 +16,13 @@ from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.solution.certificates import balance_error
 from evolvent.gears.solution.certified_pitch import CertifiedPitch, certified
+from evolvent.gears.sweep.companion_pitch import companion_pitch
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic, transmission_errors
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, initial_state, joined, uniform_pitch
 from evolvent.results.archive.archive import COARSE, Archive
 from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
+from evolvent.results.error_bars.compared import keys
 from evolvent.results.run_data import RunData, archived_run
 from evolvent.run.call import Call
 from evolvent.run.progress import ERROR_BARS, POSITIONS
@@ -42,6 +44,8 @@ class Meshes:
     """Makes the gear problem of a scene."""
     stored_as: Callable[[Scene], Scene] = lambda scene: scene
     """Makes a scene with all that the positions depend on; they are resumed whatever else differs."""
+    thinned: bool = False
+    """Whether every second position is solved, where `companion_pitch` says that it is enough."""
 
     @property
     def stage(self) -> str:
@@ -51,8 +55,8 @@ class Meshes:
 
 OWN = Meshes()
 """Meshes of a scene, for the results that are reported."""
-COMPANION = Meshes(companion_mesh, COARSE)
-"""Meshes of twice the element size, for error bars."""
+COMPANION = Meshes(companion_mesh, COARSE, thinned=True)
+"""Meshes of twice the element size, for error bars of a pitch's figures."""
 STORED = "results/state.npz", "results/gears.npz", "results/position_*.npz", f"results/{COARSE}*.npz"
 """Patterns of the files with the positions of both."""
 
@@ -153,10 +157,10 @@ class _Sweep:
         self, call: Call, scene: Scene, meshes: Meshes, resume: ResumePoint, gears: Preparation | None = None
     ) -> None:
         self.call, self.scene, self.meshes = call, scene, meshes
-        self.pitch = pitch_of(scene, meshes.problem)
         self.archive, self.groups = call.archive(meshes.stored_as(scene), meshes.part), friction_groups(scene)
         together = len(self.groups) > 1 and not resume.is_end  # the groups end together
         self.resume = ResumePoint() if together else resume
+        self.pitch = _pitch_to_sweep(scene, meshes, [each.angle for each in self.completed])
         self.gears, self.kept = gears, 0
         self.record: MeshRecord | None = None
         self.preparing, self.timings = Timings(), Timings()
@@ -277,6 +281,13 @@ def pitch_of(scene: Scene, problem: Callable[[Scene], GearProblem] = gear_proble
     problem."""
     pitches, driving = problem(scene).pitches, Member.named(scene.load.driving)
     return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, pitches, driving)
+
+
+def _pitch_to_sweep(scene: Scene, meshes: Meshes, stored: Sequence[float]) -> Pitch:
+    """The positions of a scene on these meshes. stored: angles that are there; earlier versions thinned no pitch."""
+    whole = pitch_of(scene, meshes.problem)
+    thinned = companion_pitch(whole, meshes.problem(scene).is_plane) if meshes.thinned else whole
+    return thinned if set(keys(stored)) <= set(keys(thinned.angles)) else whole
 
 
 def _log_line(position: SweptPosition) -> str:

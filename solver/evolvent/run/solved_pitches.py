@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.results.archive.archive import COARSE
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.error_bars.estimation import Companion, estimated_errors
 from evolvent.results.run_data import RunData
 from evolvent.run.call import Call
 from evolvent.run.companion import Attempt, WithCompanion
-from evolvent.run.kept_pitch import KeptPitch, Meshes, kept_pitch
+from evolvent.run.kept_pitch import COMPANION, KeptPitch, Meshes, kept_pitch
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import wanted_output
 
@@ -33,9 +32,13 @@ class SolvedPitches(WithCompanion[KeptPitch]):
         return replace(run, errors=estimated_errors(run, companion)) if wanted else run
 
 
-def solved_pitches(call: Call, scene: Scene, part: str = "") -> SolvedPitches:
-    """Solves and stores both pitches. Collective; raises as `kept_pitch`. part: of the archive."""
-    fine, coarse = kept_pitch(call, scene, Meshes(part=part)), Meshes(companion_mesh, COARSE + part)
+def solved_pitches(call: Call, scene: Scene, part: str = "", companion: Meshes = COMPANION) -> SolvedPitches:
+    """Solves and stores both pitches. Collective; raises as `kept_pitch`.
+
+    part: of the archive; that of the companion is `COARSE` before it.
+    companion: its meshes, and whether every second position is enough.
+    """
+    fine, coarse = kept_pitch(call, scene, Meshes(part=part)), replace(companion, part=COARSE + part)
     return SolvedPitches(fine, call.companion(scene, lambda: kept_pitch(call, fine.scene, coarse)))
 
 

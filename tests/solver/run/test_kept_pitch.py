@@ -18,11 +18,11 @@ from evolvent.gears.solution import certificates
 from evolvent.gears.solution.certificates import BalanceError, PitchImbalance
 from evolvent.results.archive.store import ArchiveError
 from evolvent.run.call import Call, Options
-from evolvent.run.kept_pitch import OWN, friction_groups, kept_pitch, resume_point
+from evolvent.run.kept_pitch import COMPANION, OWN, friction_groups, kept_pitch, resume_point
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 from tests.support.computing.interruption import Interrupted, interrupted
-from tests.support.gear_cases import spur_scene
+from tests.support.gear_cases import helical_scene, spur_scene
 from tests.support.running.patches import calling_first
 
 
@@ -140,3 +140,30 @@ def test_friction_coefficients_in_groups_give_the_same_pitch(tmp_path: Path, pre
         errors.append([result.transmission_error for position in swept for result in position.results])
     assert len(friction_groups(scene)) == 2 and len(prepared) == 3
     assert len(errors[0]) == 6 and errors[1] == pytest.approx(errors[0], rel=1e-8)
+
+
+@pytest.mark.parametrize("stored", [1, 3, None])
+def test_companion_of_an_earlier_version_is_resumed(stored: int | None, tmp_path: Path) -> None:
+    """A helical pair with 16 positions: the companion has every second one. Where an earlier version, which solved all
+    of them, was stopped after three, the other 13 follow, and all are read where it was done; after one, which both
+    have, every second one follows. What is solved twice is the same, 1e-6 of the transmission error."""
+    scene = helical_scene("sweep.positions=16", "contact.friction=0.0")
+    every = replace(COMPANION, thinned=False)
+    with temporary_call(tmp_path / "new") as call:
+        new = kept_pitch(call, scene, COMPANION)
+    with temporary_call(tmp_path / "old") as call:
+        if stored is None:
+            kept_pitch(call, scene, every)
+        else:
+            with interrupted(1 + 2 * stored), pytest.raises(Interrupted):  # gears, then a position and its state each
+                kept_pitch(call, scene, every)
+            assert len(resume_point(resumed(call), scene, COMPANION).positions) == stored
+        found = kept_pitch(resumed(call), scene, COMPANION)
+    step = 2.0 * np.pi / scene.pinion.teeth / 16
+    assert [each.angle for each in new.solved.positions] == pytest.approx([2 * step * k for k in range(8)])
+    count = 8 if stored == 1 else 16
+    angles = [each.angle for each in found.solved.positions]
+    assert angles == pytest.approx([16 / count * step * k for k in range(count)])
+    for one, exact in zip(found.solved.positions[:: count // 8], new.solved.positions, strict=True):
+        error = exact.results[0].transmission_error
+        assert one.results[0].transmission_error == pytest.approx(error, rel=1e-6)

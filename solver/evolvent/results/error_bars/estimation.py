@@ -16,9 +16,11 @@ D and the rates p are those of `compared`.
   companion. Where the load rises towards an end of the face the largest one is that of an end layer, and D is by how
   much it falls if the layer is twice as long: as much as the limit at the end of the face exceeds it.
 
-Both meshes are solved at the same positions. The error of sampling the pitch at these positions is estimated by
-`position_spacing` and added, and in line contact what it is off by beside the resolved contact (`line_parts`). Errors
-of the model, such as effects that the scene leaves out, are in none of them.
+The companion is solved at the run's positions or at every second one (`companion_pitch`), and meshes are compared at
+the positions of both. With friction its steps are then twice as long, and what that changes is in D, too. The error of
+sampling the pitch at the run's positions is estimated by `position_spacing` and added, and in line contact what it is
+off by beside the resolved contact (`line_parts`). Errors of the model, such as effects that the scene leaves out, are
+in none of them.
 """
 
 from __future__ import annotations
@@ -38,7 +40,7 @@ from evolvent.results.archive.error_bar_data import (
     write_error_bars,
 )
 from evolvent.results.engagement import engagement, with_hertz, with_line_loads
-from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve, Reduction
+from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve, Reduction, keys
 from evolvent.results.error_bars.line_parts import line_parts
 from evolvent.results.error_bars.position_spacing import PositionFigure, spacing_errors
 from evolvent.results.face_load import FaceLoad, face_load
@@ -48,7 +50,8 @@ from evolvent.results.run_data import RunData
 
 @dataclass(frozen=True)
 class Companion:
-    """The coarse companion of a run: the same scene and positions on meshes of twice the element size."""
+    """The coarse companion of a run: the same scene on meshes of twice the element size, at the positions of the run or
+    at every second one."""
 
     run: RunData | None
     """Results of the companion, on rank 0; None on other ranks and where its solution failed."""
@@ -86,20 +89,30 @@ def estimated_errors(run: RunData, companion: Companion) -> EstimatedErrors:
 
 def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
     """The part of the error bars that comes from the mesh, at each friction coefficient. coarse: the same scene on
-    elements of twice the size."""
-    return tuple(_errors(run, coarse, index) for index in range(len(run.frictions)))
+    elements of twice the size, at some of its positions. Raises ValueError where none is common to both."""
+    common = at_common_positions(run, coarse)
+    return tuple(_errors(run, common, coarse, index) for index in range(len(run.frictions)))
 
 
-def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
-    """Errors of the mesh at the friction coefficient with this index."""
+def at_common_positions(run: RunData, coarse: RunData) -> RunData:
+    """The run at the positions of its companion. Raises ValueError where it has none of them."""
+    known = set(keys(coarse.angles))
+    positions = tuple(each for each, key in zip(run.positions, keys(run.angles)) if key in known)
+    if not positions:
+        raise ValueError("no position is common to both")
+    return replace(run, positions=positions)
+
+
+def _errors(run: RunData, common: RunData, coarse: RunData, index: int) -> FigureErrors:
+    """Errors of the mesh at the friction coefficient with this index. common: the run at the companion's positions."""
     hertz = run if run.is_line else with_hertz(run)  # there pressures are Hertz', with the curvatures of exact flanks
-    runs = run, hertz, with_line_loads(run), with_line_loads(coarse)
+    runs = run, hertz, with_line_loads(common), with_line_loads(coarse)
     curves = [engagement(each, index, run.inner_path) for each in runs]
     stiffness, factor = STIFFNESS[run.scene.mesh.order], SHARING[run.scene.mesh.order]
 
     def over_pitch(value: PositionFigure, factor: float) -> Compared:
         own, other = (
-            Curve(each.angles, np.array([value(each, at[index]) for at in each.positions])) for each in (run, coarse)
+            Curve(each.angles, np.array([value(each, at[index]) for at in each.positions])) for each in (common, coarse)
         )
         return Compared(own, other, factor)
 
@@ -112,7 +125,7 @@ def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
         mesh_stiffness_N_per_mm_um=over_pitch(mesh_stiffness, stiffness).of_figure(np.mean),
         secant_stiffness_N_per_mm_um=over_pitch(secant_stiffness, stiffness).of_figure(np.mean),
         loss_percent=over_pitch(loss_percent, factor).of_figure(np.mean),
-        face_load_factor=_face_error(face_load(run, index), face_load(coarse, index), factor),
+        face_load_factor=_face_error(face_load(common, index), face_load(coarse, index), factor),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from evolvent.gears.pressure.contact_cells import coarse_contact
@@ -14,7 +14,7 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import RELIEVE, about_spacing, tip_edge_contact
 from evolvent.run.call import Call
 from evolvent.run.computation import Computation, Outputs, Results
-from evolvent.run.kept_pitch import STORED
+from evolvent.run.kept_pitch import COMPANION, STORED
 from evolvent.run.solved_pitches import SolvedPitches, companion_of, solved_pitches
 from evolvent.run.strength.fatigue_lines import fatigue_lines
 from evolvent.scene.schema.fatigue import FatigueSection
@@ -41,8 +41,9 @@ class Fatigue(Computation[SolvedPitches]):
     )
 
     def solve(self, call: Call) -> SolvedPitches:
-        """Both pitches, see `Computation.solve`."""
-        return solved_pitches(call, self.scene)
+        """Both pitches, see `Computation.solve`. Changes with friction are compared between meshes at the worst of all
+        positions, so that the companion has them all."""
+        return solved_pitches(call, self.scene, companion=replace(COMPANION, thinned=False))
 
     def results(self, call: Call, solved: SolvedPitches) -> Results:
         """Tables of the criteria, and warnings where figures do not hold."""

@@ -29,8 +29,8 @@ from evolvent.results.archive.error_bar_data import (
     write_error_bars,
 )
 from evolvent.results.engagement import engagement
-from evolvent.results.error_bars.compared import Compared, Curve
 from evolvent.results.error_bars.estimation import Companion, errors_between, estimated_errors
+from evolvent.results.position_figures import transmission_error_um
 from evolvent.results.run_data import RunData, SolvedPosition, read_run
 from evolvent.run.kept_pitch import pitch_of
 from evolvent.run.kinds.run import Run
@@ -117,20 +117,6 @@ def solved(scene: Scene, mesh: Mesher) -> RunData:
     return run
 
 
-def test_difference_of_curves_is_the_larger_of_figure_and_rms() -> None:
-    """Exact: 3 + sin over a whole turn against the same shifted by 0.3: peak-to-peak agrees, the relative rms
-    difference is 0.3/√9.5; against twice itself the figure's own difference is the larger one. NaN in one curve and
-    rotations of one alone do not count."""
-    at = np.arange(64) * 2 * np.pi / 64
-    first = Curve(at, 3.0 + np.sin(at))
-    assert Compared(first, Curve(at, first.values + 0.3)).of_figure(np.ptp) == pytest.approx(2.0 * 0.3 / np.sqrt(9.5))
-    assert Compared(first, Curve(at, 2.0 * first.values)).of_figure(np.mean) == pytest.approx(3.0)
-    holes = np.where(at < 1.0, np.nan, first.values)
-    assert Compared(first, Curve(at, holes)).of_figure(np.nanmax) == 0.0
-    assert Compared(first, Curve(np.append(at, 9.0), np.append(first.values, 3.5))).of_figure(np.nanmax) == 0.0
-    assert Compared(Curve(at, 0.0 * at), Curve(at, 0.0 * at)).of_figure(np.mean) == 0.0
-
-
 def test_hertz_pressures_have_no_error() -> None:
     """Problem: a made-up run of the Yang pair whose slices carry Hertz's pressure exactly, with itself as companion.
     Exact: no error in transmission error, stiffness and loss; in the pressures only that of sampling the ellipse."""
@@ -167,6 +153,24 @@ def test_companion_without_contact_gives_no_error_bars() -> None:
     bare = tuple(tuple(replace(solved, teeth=()) for solved in each) for each in run.positions)
     found = estimated_errors(run, Companion(replace(run, positions=bare), "", 0.0))
     assert found.figures == () and "cannot be compared" in found.missing
+
+
+def test_companion_is_compared_at_its_own_positions() -> None:
+    """Problem: a made-up run of the Yang pair at six positions, and as its companion three of them. Exact: no error in
+    transmission error, stiffness, loss and face load, though a cosine has three quarters of its peak-to-peak value at
+    three positions; in the pressures the same fit of the ellipse to Hertz as with six. With positions between those of
+    the run there are no bars, and the reason."""
+    run = synthetic_run("contact.friction=[0.0, 0.1]")
+    second = replace(run, positions=run.positions[::2])
+    assert np.ptp([transmission_error_um(run, each[0]) for each in second.positions]) < 0.76 * np.ptp(
+        [transmission_error_um(run, each[0]) for each in run.positions]
+    )
+    for errors, same in zip(errors_between(run, second), errors_between(run, run), strict=True):
+        assert errors.transmission_error_peak_to_peak_um == errors.mesh_stiffness_N_per_mm_um == 0.0
+        assert errors.loss_percent == errors.secant_stiffness_N_per_mm_um == 0.0 and errors.face_load_factor < 1e-12
+        assert (errors.max_pressure_MPa, errors.mean_pressure_MPa) == (same.max_pressure_MPa, same.mean_pressure_MPa)
+    between = replace(run, positions=synthetic_run("sweep.positions=7").positions[1:])
+    assert "no position is common" in estimated_errors(run, Companion(between, "", 0.0)).missing
 
 
 def test_companion_resolution_is_halved_in_all_directions() -> None:

@@ -159,7 +159,7 @@ def cache(
         require(what in (LIST, CLEAR), f"cache: found {what!r}; allowed: list, clear; remedy: evolvent cache list")
         from evolvent.fem.cache.cache import Cache
 
-        kept = Cache()
+        kept, most = Cache(), Cache.of_environment().bound
         if what == CLEAR:
             typer.echo(f"{kept.clear() / 1e6:.0f} MB removed from {kept.folder}")
             return
@@ -168,7 +168,7 @@ def cache(
             used = datetime.fromtimestamp(each.used).isoformat(" ", "minutes")
             typer.echo(f"{each.size / 1e6:8.1f} MB  {used}  {each.about}")
         total = sum(each.size for each in entries)
-        typer.echo(f"{total / 1e6:8.1f} MB of at most {kept.bound / 1e6:.0f} MB in {kept.folder}")
+        typer.echo(f"{total / 1e6:8.1f} MB of at most {most / 1e6:.0f} MB in {kept.folder}")
 
 
 def info() -> None:

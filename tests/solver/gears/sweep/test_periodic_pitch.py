@@ -97,9 +97,9 @@ def test_order_of_positions_solved_again(cold: list[SweptPosition]) -> None:
 
 
 def test_positions_solved_again_start_from_their_last_solution(cold: list[SweptPosition]) -> None:
-    """Only the friction history has changed: all of them together take fewer iterations than the first time, as the state
-    without friction is there already, and none takes more but the first one, which had the history of flanks that
-    slide everywhere, as they nearly do."""
+    """Only the friction history has changed: all of them together take fewer iterations than the first time, as the
+    state without friction is there already, and none takes more but the first one, which had the history of flanks
+    that slide everywhere, as they nearly do."""
     counts = [position.results[0].iterations for position in cold]
     first, again = counts[: len(counts) - POSITIONS], counts[POSITIONS:]
     assert sum(again) < sum(first)

@@ -250,10 +250,11 @@ def beyond(docs: Path) -> str:
     for name, column, bar in BARS:
         parts.append(_part(name, [abs(getattr(row, column)) for row in rows], bar))
     held = sum(row.inside for row in rows), sum(row.positions for row in rows)
+    space = [row for row in rows if row.face_load_factor > 1.0]  # it is 1 in the plane
     return (
         f"Beyond the bars, of {len(rows)} rows: {'; '.join(filter(None, parts))}. Error bars hold at {held[0]} of "
-        f"{held[1]} positions, of {sum(row.peak_to_peak_inside for row in rows)} peak-to-peak values and of "
-        f"{sum(row.face_load_inside for row in rows)} face load factors."
+        f"{held[1]} positions, {sum(row.peak_to_peak_inside for row in rows)} of {len(rows)} peak-to-peak values and "
+        f"{sum(row.face_load_inside for row in space)} of {len(space)} face load factors in space."
     )
 
 

@@ -4,8 +4,9 @@
     Gᵀ q = F,      φ(q) = (2/(π E*)) q [¼ + ln(w/b)],   b = √(4 q ρ / (π E*))
 
 G is H without friction; with it G holds the moment of friction too, and B the normal displacements by friction. φ is
-what the half-ellipse of half-width w leaves out of the approach of both bodies: the difference of the mean
-displacements under it and under Hertz' half-ellipse b (Johnson, Contact Mechanics, 1985, 4.2 and 5.6).
+what the half-ellipse of half-width w and the least gap g leave out of the approach of both bodies: the difference
+(2/(π E*)) q ln(w/b) of the mean displacements under it and under Hertz' half-ellipse b, and the mean gap b²/(8 ρ) under
+that one above the least, (2/(π E*)) q/4 (Johnson, Contact Mechanics, 1985, 4.2 and 5.6).
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ and Coulomb's μ it is μ q, and the torques of pinion and wheel over their base
 
 with the hats h_j of `Stations`, the direction d of −1 or 1 and the roll lengths of the contact on both gears,
 ρ_1 = r_b1 tan α_wt + ξ and ρ_2 = r_b2 tan α_wt − ξ. The driving gear's power exceeds the other one's by that of
-friction, μ ∫ q |ξ| (1 + 1/u) ds, at each position.
+friction, μ ∫ q |ξ| (1 + 1/u) ds per radian of the pinion, at each position.
 """
 
 from __future__ import annotations

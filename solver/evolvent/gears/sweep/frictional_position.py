@@ -70,7 +70,7 @@ def _expected_direction(geometry: ContactGeometry, friction: float, before: Prev
     """Friction (q, d−1) over its bound with which Newton's method starts: as at the position before, where it was in
     the known direction of sliding, or where that is not known; else full sliding in that direction."""
     known = slip_direction(geometry, span)
-    if before.pattern is None:
+    if before.pattern is None or friction == 0.0:  # friction terms may be kept without friction
         return known
     earlier = before.pattern.at(geometry) / friction
     agrees = np.einsum("qa,qa->q", earlier, known) > 0.0

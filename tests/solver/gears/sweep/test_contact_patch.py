@@ -59,7 +59,7 @@ def test_friction_of_the_position_before_changes_nothing(
 
 def test_friction_starts_from_the_pattern_unless_that_is_against_sliding(geometry: ContactGeometry) -> None:
     """Problem: a pattern of half the bound, at each point against the known direction of sliding, or along it. Exact:
-    full sliding in the known direction, or the pattern."""
+    full sliding in the known direction, or the pattern; the known direction without friction, whose bound is zero."""
     known = slip_direction(geometry, 0.01)
     assert known.any() and not known.any(axis=1).all()
     bound = FRICTION * np.ones((len(known), 1))
@@ -67,6 +67,7 @@ def test_friction_starts_from_the_pattern_unless_that_is_against_sliding(geometr
         pattern = FrictionPattern.of(geometry, np.hstack([np.ones((len(known), 1)), sign * bound * known]))
         before = PreviousJump(geometry.stand, np.zeros((len(geometry.node), 3)), pattern)
         assert _expected_direction(geometry, FRICTION, before, 0.01) == pytest.approx(wanted, abs=1e-14)
+        assert np.array_equal(_expected_direction(geometry, 0.0, before, 0.01), known)
 
 
 def test_pattern_is_that_of_the_points_themselves(geometry: ContactGeometry) -> None:

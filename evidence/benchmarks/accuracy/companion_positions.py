@@ -74,13 +74,13 @@ class CostRow:
 
     case: str
     solved: int
-    """Positions solved until friction is periodic, of all."""
+    """Positions solved until friction is periodic, of a companion at all positions."""
     solved_second: int
-    """The same of every second one."""
+    """Positions solved until friction is periodic, of a companion at every second one."""
     seconds: float
-    """Processor time of their solution [s], of all."""
+    """Processor time [s] of the companion at all positions."""
     seconds_second: float
-    """The same of every second one."""
+    """Processor time [s] of the companion at every second one."""
 
 
 @dataclass(frozen=True)
@@ -91,9 +91,9 @@ class HeldRow:
     bars: int
     """Number of bars: of meshes and friction coefficients."""
     every: int
-    """Those that hold it with the companion at all positions."""
+    """Bars that hold the true error with the companion at all positions."""
     second: int
-    """Those that hold it with the companion at every second one."""
+    """Bars that hold the true error with the companion at every second one."""
 
 
 def cases() -> Iterator[tuple[str, Scene]]:

@@ -49,19 +49,16 @@ class FrictionPattern:
 
     places: (k, 2), as of `contact_places`.
     ratio: (k, d−1), tangential traction over pressure.
-    module: normal module [mm].
     """
 
     places: Floats
     ratio: Floats
-    module: float
 
     @staticmethod
     def of(geometry: ContactGeometry, traction: Floats) -> FrictionPattern:
         """Friction pattern of tractions (q, d) at the points [MPa]."""
         on = traction[:, 0] > 0.0
-        module = geometry.stand.pair.pinion.normal_module
-        return FrictionPattern(contact_places(geometry)[on], traction[on, 1:] / traction[on, :1], module)
+        return FrictionPattern(contact_places(geometry)[on], traction[on, 1:] / traction[on, :1])
 
     def at(self, geometry: ContactGeometry) -> Floats:
         """Friction over pressure (q, d−1) at the points of another position, from the nearest point of this one; zero
@@ -70,7 +67,8 @@ class FrictionPattern:
         if not len(self.places):
             return np.zeros((len(places), self.ratio.shape[1]))
         nearest = cKDTree(self.places).query(places)[1]
-        near = np.abs(self.places[nearest, 0] - places[:, 0]) <= SLICE_WEIGHT * NEAR * self.module
+        reach = SLICE_WEIGHT * NEAR * geometry.stand.pair.pinion.normal_module
+        near = np.abs(self.places[nearest, 0] - places[:, 0]) <= reach
         return np.where(near[:, None], self.ratio[nearest], 0.0)
 
 

@@ -8,10 +8,14 @@ import numpy as np
 
 from evolvent.contact.search.clipping import EMPTY, clip, fan
 from evolvent.contact.search.facet_candidates import facet_balls
-from evolvent.contact.search.projection import project
-from evolvent.fem.reference_facets import reference_cell
+from evolvent.contact.search.projection import dot, project
+from evolvent.fem.reference_facets import cross, reference_cell
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Bools, Floats, Ints
+
+STRAIGHT = 5e-3
+"""Bend of edges, over their length, up to which they count as straight. Points between an edge and its chord get their
+partners on the polynomial of the neighbouring facet, which is continuous with its own."""
 
 
 @dataclass(frozen=True)
@@ -67,13 +71,31 @@ def segments_3d(surface1: Surface, surface2: Surface, i1: Ints, i2: Ints, max_ga
 
 
 def _pieces(surface1: Surface, surface2: Surface, i1: Ints, i2: Ints) -> int:
-    """Number of chords that replace an edge of facet 2: two if either side is curved, more if facet 1 is much
-    smaller."""
+    """Number of chords that replace an edge of facet 2: one if all edges are nearly straight, two if either side is
+    curved, more if facet 1 is much smaller."""
     order = max(surface1.order, surface2.order)
     if len(i1) == 0:
         return order
+    bends = max(_bend(surface1, np.unique(i1)), _bend(surface2, np.unique(i2)))
     ratio = float((facet_balls(surface2, i2)[1] / facet_balls(surface1, i1)[1]).max())
-    return order * min(max(1, int(np.ceil(0.5 * ratio))), 8)
+    return (order if bends > STRAIGHT else 1) * min(max(1, int(np.ceil(0.5 * ratio))), 8)
+
+
+def _bend(surface: Surface, facets: Ints) -> float:
+    """Largest distance of the middle of an edge from its chord, in the plane of the facet there, over the chord."""
+    if surface.order == 1:
+        return 0.0
+    corners = reference_cell(surface.shape, surface.order).corners
+    ends, following = corners, np.roll(corners, -1, axis=0)
+    a, b, middle = (
+        surface.positions(facets, np.broadcast_to(xi, (len(facets), *xi.shape)))
+        for xi in (ends, following, 0.5 * (ends + following))
+    )
+    normal = surface.area_vectors(facets, np.broadcast_to(0.5 * (ends + following), (len(facets), *ends.shape)))
+    chord = b - a
+    across = cross(chord, normal)
+    off = np.abs(dot(middle - 0.5 * (a + b), across))
+    return float((off / np.sqrt(dot(across, across) * dot(chord, chord))).max())
 
 
 def _outline(surface: Surface, pieces: int) -> Floats:

@@ -88,19 +88,18 @@ def overlap_outside(
     contact forces (n, k) of the solution; rotation: of pinion and wheel [rad] since the search."""
     if not places:
         return 0.0
-    pinion, wheel = (contact.geometry.flank_forces(gear, force) for gear in Member)
-    return max(_overlap(contact, place, (pinion, wheel), rotation) for place in places)
+    moved = [_deflections(contact.geometry, gear, places, force) for gear in Member]
+    return max(_overlap(contact, place, each, rotation) for place, each in zip(places, zip(*moved)))
 
 
 def _overlap(
-    contact: GearContact, place: UnsearchedOverlap, forces: tuple[Floats, Floats], rotation: tuple[float, float]
+    contact: GearContact, place: UnsearchedOverlap, moved: tuple[Floats, ...], rotation: tuple[float, float]
 ) -> float:
-    geometry, pairs = contact.geometry, place.pairs
+    """Depth [mm] of the deepest overlap at a place. moved: displacements (q, d) of its points on pinion and wheel."""
     u1, u2 = (
-        _deflection(geometry, gear, place.tooth, forces[gear], side) + _rotated(geometry, gear, rotation[gear], side)
-        for gear, side in zip(Member, place.sides)
+        u + _rotated(contact.geometry, gear, rotation[gear], side) for gear, u, side in zip(Member, moved, place.sides)
     )
-    gap = pairs.gap + sum(body.lost(*side[1:]) for body, side in zip(contact.bodies, place.sides))
+    gap = place.pairs.gap + sum(body.lost(*side[1:]) for body, side in zip(contact.bodies, place.sides))
     return float(np.max(np.einsum("qa,qa->q", place.normals, u1 - u2) - gap, initial=0.0))
 
 
@@ -123,16 +122,21 @@ def _unsearched_facets(geometry: ContactGeometry, tooth: int) -> Ints:
     return np.flatnonzero(off & ~facets_in_window(pinion, stand, tooth, geometry.half_width))
 
 
-def _deflection(geometry: ContactGeometry, gear: Member, tooth: int, forces: Floats, points: FlankPoints) -> Floats:
-    """Displacements (q, d) [mm] at points of a gear's flank in the common frame; forces (m, d) on the contact's rows of
-    it."""
-    surface, facets, xi = points
-    nodes, place = np.unique(surface.facets[facets], return_inverse=True)
-    body = geometry.bodies[gear]
-    u = body.chain.apply(geometry.rows(gear)[0], forces, body.rows(tooth, nodes))
-    u = u @ geometry.stand.rotation(gear, geometry.d).T
-    N = tabulate(surface.shape, surface.order, xi)[0]
-    return np.einsum("qk,qka->qa", N, u[place.reshape(N.shape)])
+def _deflections(
+    geometry: ContactGeometry, gear: Member, places: tuple[UnsearchedOverlap, ...], force: Floats
+) -> list[Floats]:
+    """Displacements (q, d) [mm] of the points of each place on a gear's flanks, in the common frame; force (n, k): the
+    contact forces. All places share one product with the compliance."""
+    body, sides = geometry.bodies[gear], [place.sides[gear] for place in places]
+    found = [np.unique(surface.facets[facets], return_inverse=True) for surface, facets, _ in sides]
+    rows = [body.rows(place.tooth, nodes) for place, (nodes, _) in zip(places, found)]
+    u = body.chain.apply(geometry.rows(gear)[0], geometry.flank_forces(gear, force), np.concatenate(rows))
+    parts = np.split(u @ geometry.stand.rotation(gear, geometry.d).T, np.cumsum([len(each) for each in rows])[:-1])
+    result = []
+    for (surface, _, xi), (_, place), part in zip(sides, found, parts):
+        N = tabulate(surface.shape, surface.order, xi)[0]
+        result.append(np.einsum("qk,qka->qa", N, part[place.reshape(N.shape)]))
+    return result
 
 
 @lru_cache(maxsize=16)

@@ -61,10 +61,10 @@ class GearContact:
     @cached_property
     def operator(self) -> ContactOperator:
         """Contact of all tooth pairs, the gap opened by the wear of both flanks."""
-        worn = [hats @ body.worn for hats, body in zip(self.geometry.flank_hats, self.bodies) if body.worn is not None]
-        if not worn:
+        if all(body.worn is None for body in self.bodies):
             return self.geometry.operator
-        depth = np.sum(worn, axis=0)
+        hats = self.geometry.flank_hats
+        depth = np.sum([ψ @ body.worn for ψ, body in zip(hats, self.bodies) if body.worn is not None], axis=0)
         return self.geometry.operator.worn(depth, np.zeros_like(depth))
 
     def system(

@@ -14,14 +14,17 @@ from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent_meshes.arrays import Bools, Floats
 
 SLICE_WEIGHT = 0.5  # of distances along ξ beside those across the contact line; 0.02 to 0.5 predict equally well
+THINNED = 3
+"""One in so many points of a contact patch is kept: it predicts as well, and nearest points are found in half the time.
+"""
 
 
 @dataclass(frozen=True)
 class ContactPatch:
-    """Pressed points among the q points of a position.
+    """Which points of a position are pressed, among one in THINNED.
 
-    places: (q, 2), as of `contact_places`.
-    pressed: (q,) bool.
+    places: (k, 2), as of `contact_places`.
+    pressed: (k,) bool.
     """
 
     places: Floats
@@ -30,7 +33,7 @@ class ContactPatch:
     @staticmethod
     def of(geometry: ContactGeometry, pressure: Floats) -> ContactPatch:
         """Contact patch from the pressures (q,) at the points."""
-        return ContactPatch(contact_places(geometry), pressure > 0.0)
+        return ContactPatch(contact_places(geometry)[::THINNED], pressure[::THINNED] > 0.0)
 
     def at(self, geometry: ContactGeometry) -> Bools:
         """Points (q,) bool of another position whose nearest point in this patch is pressed."""

@@ -25,6 +25,7 @@ from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump,
 from evolvent.gears.sweep.frictional_position import Solved, solve_position
 from evolvent.gears.sweep.position_result import PositionResult, position_result
 from evolvent.gears.sweep.position_search import (
+    START,
     KnownSolution,
     RotationCourse,
     SharedPosition,
@@ -222,8 +223,8 @@ def _histories(
 
 
 def _first_history(model: GearModel, shared: SharedPosition, friction: float, span: float) -> FrictionHistory:
-    heading = nominal_direction(shared.contact.geometry, span)
-    return FrictionHistory.of(model, shared.contact, sliding(shared.system, friction, heading, shared.smooth))
+    heading, system = nominal_direction(shared.contact.geometry, span), replace(shared.system, tolerance=START)
+    return FrictionHistory.of(model, shared.contact, sliding(system, friction, heading, shared.smooth))
 
 
 def _previous_jumps(shared: SharedPosition, histories: Histories) -> list[PreviousJump | None]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from evolvent import SearchError
+from evolvent.contact.search import segments
 from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.reference_facets import hats, reference_cell
@@ -175,6 +176,28 @@ def test_long_narrow_facets_are_covered_once() -> None:
     p = pair_surfaces(a, b, 0.01, 0.01)
     assert np.abs(covered(a, p) - 1).max() < 1e-12
     assert np.abs(p.gap - 0.002).max() < 1e-6
+
+
+def test_slightly_bent_edges_are_taken_as_their_chords(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Caps whose edges bend by up to half of STRAIGHT: chords cover every facet once, with fewer points. Exact: the
+    integral of a cubic's interpolant on surface 2 with edges that are followed by two chords, to 1e-10: neighbours
+    agree along their edge, and nearly in their slopes."""
+    a = lattice(6, 6, *QUAD2, cap(5.0, 0.1, 0.0, 0.05))
+    b = facing(lattice(9, 9, *QUAD2, cap(5.01, 0.17, 0.7, 0.05)))
+    field = b.points[:, 0] ** 3 + b.points[:, 1]
+
+    def integral() -> tuple[int, float]:
+        p = pair_surfaces(a, b, 0.5, 0.5)
+        assert np.abs(covered(a, p) - 1).max() < 1e-12
+        assert_consistent(a, b, p)
+        return len(p.weight), float(p.weight @ b.evaluate(field[:, None], p.facet2, p.xi2[:, None])[0][:, 0, 0])
+
+    assert 0.1 * segments.STRAIGHT < segments._bend(b, np.arange(len(b.facets))) < 0.5 * segments.STRAIGHT
+    count, found = integral()
+    monkeypatch.setattr(segments, "STRAIGHT", 0.0)
+    more, wanted = integral()
+    assert count < 0.9 * more
+    assert found == pytest.approx(wanted, abs=1e-10)
 
 
 def test_points_of_chosen_facets_are_those_of_the_whole_search() -> None:

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.gears.contact import pair_contact, tooth_contact
+from evolvent.gears.contact import overlap_check, pair_contact, tooth_contact
 from evolvent.gears.contact.overlap_check import farthest_moved, overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep import position_search
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
 DEEP = 277  # the seed of a plane pair whose next tooth pair touches far before its contact line reaches the flank
@@ -79,6 +81,24 @@ def test_depth_of_an_overlap_of_rotated_flanks(deep: GearModel) -> None:
         turned = depth_outside(deep, (δ, 0.0), rotation)
         anew = depth_outside(deep, (δ + rotation[0], rotation[1]))
         assert turned > depth and turned - depth == pytest.approx(anew - depth, rel=0.05)
+
+
+def test_places_share_one_product_with_the_compliance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: a helical pair under load, both neighbours of its middle tooth pair nearly touch. Exact: the
+    deepest overlap of all places is the deepest that each has alone; they take one product a gear."""
+    model = model_of(helical_scene("contact.friction=0", "mesh.order=2"))
+    shared = solved(model)
+    contact, force = shared.contact, shared.smooth.force
+    monkeypatch.setattr(overlap_check, "NEARLY", 0.1)  # flanks this far apart, so that there are two places
+    places = unsearched_overlaps(contact.geometry, model.teeth)
+    assert len(places) >= 2
+    turned = (2e-2, 0.0)  # rad: until they overlap
+    kind = type(model.bodies[Member.PINION].chain)
+    with patch.object(kind, "apply", autospec=True, side_effect=kind.apply) as product:
+        together = overlap_outside(contact, places, force, turned)
+    assert product.call_count == 2
+    alone = [overlap_outside(contact, (place,), force, turned) for place in places]
+    assert together == pytest.approx(max(alone), rel=1e-12) and together > 0.0
 
 
 def test_overlap_as_deep_as_the_deflection_is_searched(deep: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from evolvent.gears.meshing.levelled_meshes import LONGEST, has_long_cells, is_large, is_two_level
+from evolvent.gears.meshing.flank_levels import LONGEST
+from evolvent.gears.meshing.levelled_meshes import has_long_cells, is_large, is_two_level
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.line_level import LINE, RESOLVED_PARTS

@@ -25,6 +25,15 @@ BODY_ROWS = 13
 """Approximate number of coarse rows of a flank; each level halves them."""
 BODY_LAYER = 0.45
 """Largest height of a coarse layer along the face, in normal modules."""
+LONGEST = 5.0
+"""Length of the finest flank cells along the face, over that along the profile, up to which levels are used by default.
+Patches reach over so many of the longer edges; a crowned spur pair with cells ten times as long, 380,000 degrees of
+freedom in one mesh, had all rows in each patch, of 108,000 degrees of freedom."""
+LENGTHENED = 2.0
+"""How many times as many layers as the contact wants a flank gets, at most, so that its cells are no longer than that:
+one mesh in place of levels takes several times as much memory."""
+ROUNDED_UP = 1.5
+"""Largest number of coarse layers over the fewest ones: with more of them, a level halves the layers."""
 SHEAR = {"quick": 0.425, "standard": 0.55, "fine": 0.425}
 """Elements of the finest level by which a layer may shear the pressure ridge, on average along the profile."""
 
@@ -59,25 +68,49 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     count = max(1, round(math.log2(needs.rows / BODY_ROWS)))
     rows = 3 * max(LEAST_ROWS, math.ceil(needs.rows / 2**count / 3))
     wanted = max(LEAST_LAYERS[level], math.ceil(needs.shear / SHEAR[level]))
+    shortest = math.ceil(length_over_height(problem, member, rows * 2**count, 1) / LONGEST)
+    if shortest <= LENGTHENED * wanted:
+        wanted = max(wanted, shortest)
     coarsest = math.ceil(gear.face_width / (BODY_LAYER * gear.normal_module))
-    factor = max(1, round((wanted / coarsest) ** (1 / count)))
-    layers = max(coarsest, math.ceil(wanted / factor**count), 2 * fewest_layers(gear))  # a companion has half of them
+    factors = _layer_factors(count, wanted / coarsest)
+    # a companion has half of them
+    layers = max(coarsest, math.ceil(wanted / math.prod(factors)), 2 * fewest_layers(gear))
     depths = LAYER_DEPTHS * DEEPEST * gear.normal_module / float(LAYER_DEPTHS.sum())
     coarse = replace(
         sector_resolution(problem, member), profile_elements=rows, face_elements=layers, end_size_ratio=1.0,
         graded_middles=True,
         layer_depths=(float(depths[0]), float(depths[1]), float(depths[2])),
     )
-    levels = _levels(count, factor, float(depths[0]), needs)
+    levels = _levels(factors, float(depths[0]), needs)
     wanted_rows = needs.rows * math.sqrt(problem.lightest.torque / problem.torque)  # 2b_H grows with √torque
     return LevelledSector(coarse, tuple(levels[: max(1, math.ceil(math.log2(wanted_rows / rows) - 1e-9))]))
 
 
-def _levels(count: int, factor: int, depth: float, needs: FlankNeeds) -> list[FlankLevel]:
-    """Divisions of a flank's levels. depth: of the first cell below the coarse flank [mm]; on the finest level it is
-    that of the first thin layer."""
+def length_over_height(problem: GearProblem, member: Member, rows: int, layers: int) -> float:
+    """Length of a flank's cells along the face over that along the profile, on average, of a number of each."""
+    gear = problem.pair.gears[member]
+    lowest = sector_resolution(problem, member).flank_start_diameter or gear.root_form_diameter
+    start, tip = gear.roll_length(lowest), gear.roll_length(gear.tip_diameter)
+    arc = (tip**2 - start**2) / (2.0 * gear.base_radius)
+    along_face = gear.face_width / np.cos(np.radians(gear.helix_angle_deg)) / layers
+    return float(along_face / (arc / rows))
+
+
+def _layer_factors(count: int, refined: float) -> list[int]:
+    """Numbers of parts into which `count` levels divide the layers, larger ones first. refined: number of the finest
+    layers over the fewest coarse ones."""
+    factor = max(1, round(refined ** (1 / count)))
+    if factor > 1:
+        return [factor] * count
+    halved = min(count, max(0, math.floor(math.log(refined) / math.log(ROUNDED_UP)))) if refined > 1.0 else 0
+    return [2] * halved + [1] * (count - halved)
+
+
+def _levels(factors: list[int], depth: float, needs: FlankNeeds) -> list[FlankLevel]:
+    """Divisions of a flank's levels. factors: parts along the face on each; depth: of the first cell below the coarse
+    flank [mm]; on the finest level it is that of the first thin layer."""
     result = []
-    for left in range(count - 1, -1, -1):
+    for left, factor in zip(range(len(factors) - 1, -1, -1), factors):
         split = int(np.clip(round(depth / (float(needs.depths[0]) * 2**left)), 1, 3))
         depth /= split
         result.append(FlankLevel(2, factor, (split, 1, 1)))

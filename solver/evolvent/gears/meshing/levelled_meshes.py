@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from evolvent.gears.meshing.element_sizes import sector_resolution
-from evolvent.gears.meshing.flank_levels import FlankLevel, LevelledSector, levelled_sector
+from evolvent.gears.meshing.flank_levels import (
+    LONGEST,
+    FlankLevel,
+    LevelledSector,
+    length_over_height,
+    levelled_sector,
+)
 from evolvent.gears.meshing.sector_meshes import gear_mesh, unmodified
 from evolvent.gears.meshing.sector_sizes import finest_cells, one_mesh_sizes
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -19,11 +23,6 @@ from evolvent_meshes.sector.sector import sector_mesh
 MOST_DOFS = 300_000
 """Degrees of freedom of one fine mesh of both sectors together, from which on levels are used by default: below,
 condensing it takes no longer than condensing the patches of a levelled flank."""
-
-LONGEST = 5.0
-"""Length of the finest flank cells along the face, over that along the profile, up to which levels are used by default.
-Patches reach over so many of the longer edges; a crowned spur pair with cells ten times as long, 380,000 degrees of
-freedom in one mesh, had all rows in each patch, of 108,000 degrees of freedom."""
 
 
 @dataclass(frozen=True)
@@ -64,13 +63,8 @@ def has_long_cells(problem: GearProblem) -> bool:
 def _cell_lengths(problem: GearProblem, member: Member) -> float:
     """Length of the finest flank cells along the face over that along the profile, on average; of the lightest torque
     that the meshes serve, so that all torques of a list have levels or none."""
-    sector, gear = levelled_sector(problem.lightest, member), problem.pair.gears[member]
-    rows, layers = finest_cells(sector)
-    lowest = sector.coarse.flank_start_diameter or gear.root_form_diameter
-    start, tip = gear.roll_length(lowest), gear.roll_length(gear.tip_diameter)
-    arc = (tip**2 - start**2) / (2.0 * gear.base_radius)
-    along_face = gear.face_width / np.cos(np.radians(gear.helix_angle_deg)) / layers
-    return float(along_face / (arc / rows))
+    rows, layers = finest_cells(levelled_sector(problem.lightest, member))
+    return length_over_height(problem.lightest, member, rows, layers)
 
 
 def run_mesh(problem: GearProblem, member: Member) -> SectorMesh:

@@ -28,7 +28,13 @@ from evolvent.gears.contact.overlap_check import UnsearchedOverlap
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import NONE_KNOWN, Pitch, SweepState, SweptPosition, joined, sweep_pitch
-from evolvent.gears.sweep.position_search import KnownSolution, SharedPosition, course_after, shared_position
+from evolvent.gears.sweep.position_search import (
+    KnownSolution,
+    SharedPosition,
+    course_after,
+    shared_position,
+    without_overlaps,
+)
 
 PREPARING = 2  # ranks: from further away a search takes longer
 
@@ -95,8 +101,9 @@ class _RankedSweep:
             begin = numbers.stop
 
     def ahead(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
-        """All positions from number `begin` on, for one friction coefficient. Rank 0 solves friction; rank 1 prepares,
-        and starts each search where the one before has led."""
+        """All positions from number `begin` on, for one friction coefficient. Rank 1 prepares, and starts each search
+        where the one before has led; rank 0, which has less to do, looks for contact outside the window of what is
+        prepared, and solves friction."""
         prepared: SharedPosition | None = None
         place = state
         for k in range(begin - 1, len(self.pitch.angles)):
@@ -119,10 +126,19 @@ class _RankedSweep:
     ) -> tuple[SweptPosition | None, SharedPosition | None]:
         """Position k with friction on rank 0, the coming one without it on rank 1."""
         if self.comm.rank == 1 and coming:
-            return None, self._without_friction(coming.start, place)
+            return None, self._without_friction(coming.start, place, overlaps=False)
         if self.comm.rank == 0 and k >= begin:
-            return next(sweep_pitch(self.model, self.pitch, self.frictions, state, k, prepared, self.known)), None
+            common = None if prepared is None else self._accepted(prepared)
+            return next(sweep_pitch(self.model, self.pitch, self.frictions, state, k, common, self.known)), None
         return None, None
+
+    def _accepted(self, prepared: SharedPosition) -> SharedPosition | None:
+        """A position prepared without a look outside its window; None where there is contact: then it is searched
+        anew."""
+        try:
+            return without_overlaps(self.model, prepared)
+        except SearchError:
+            return None
 
     def _prepared(self, numbers: range, state: SweepState) -> SharedPosition | None:
         """The position that this rank prepares; None where it has none to prepare, or finds no solution."""
@@ -130,12 +146,14 @@ class _RankedSweep:
             return None
         return self._without_friction(numbers[self.comm.rank], state)
 
-    def _without_friction(self, number: int, state: SweepState) -> SharedPosition | None:
+    def _without_friction(self, number: int, state: SweepState, overlaps: bool = True) -> SharedPosition | None:
         try:
             angle, threads = self.pitch.angles[number], self.cores.used
             known = self.known.get(number)
             predicted = state.predicted(angle)
-            return shared_position(self.model, angle, predicted, self.frictions, state.patch, threads, known)
+            return shared_position(
+                self.model, angle, predicted, self.frictions, state.patch, threads, known, overlaps=overlaps
+            )
         except (NotConverged, SearchError):  # smaller steps may lead there
             return None
 

@@ -27,11 +27,11 @@ from evolvent.gears.sweep.position_result import PositionResult, position_result
 from evolvent.gears.sweep.position_search import (
     START,
     KnownSolution,
-    RotationCourse,
     SharedPosition,
     course_after,
     shared_position,
 )
+from evolvent.gears.sweep.rotation_course import RotationCourse
 from evolvent.gears.sweep.slip import nominal_direction
 from evolvent_meshes.arrays import Bools
 from evolvent_meshes.gears.member import Member

@@ -26,6 +26,7 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.position_start import PositionStart
 from evolvent.gears.sweep.contact_patch import ContactPatch
+from evolvent.gears.sweep.rotation_course import RotationCourse
 from evolvent_meshes.arrays import Bools
 from evolvent_meshes.gears.member import Member
 
@@ -62,32 +63,6 @@ class SearchedAt:
     angle: float
     beyond_nominal: tuple[float, float]
     half_width: float
-
-
-@dataclass(frozen=True)
-class RotationCourse:
-    """Free rotation of the equilibrium from position to position, to predict where a search starts.
-
-    angle: of the pinion at the last position [rad].
-    beyond_nominal: rotations of pinion and wheel there beyond the nominal ones, in equilibrium without friction [rad].
-    rate: their change per rotation of the pinion; 0 where there is no position before.
-    """
-
-    angle: float
-    beyond_nominal: tuple[float, float]
-    rate: tuple[float, float] = (0.0, 0.0)
-
-    def at(self, angle: float) -> tuple[float, float]:
-        """Rotations of pinion and wheel [rad] at a pinion angle, on a straight line through the last two positions."""
-        pinion, wheel = (value + rate * (angle - self.angle) for value, rate in zip(self.beyond_nominal, self.rate))
-        return pinion, wheel
-
-    def followed_by(self, angle: float, beyond_nominal: tuple[float, float]) -> RotationCourse:
-        """Course of the free rotation after one more position."""
-        if angle == self.angle:
-            return RotationCourse(angle, beyond_nominal, self.rate)
-        pinion, wheel = ((new - old) / (angle - self.angle) for new, old in zip(beyond_nominal, self.beyond_nominal))
-        return RotationCourse(angle, beyond_nominal, (pinion, wheel))
 
 
 @dataclass(frozen=True)
@@ -138,7 +113,7 @@ class SharedPosition:
 def shared_position(
     model: GearModel, angle: float, beyond_nominal: tuple[float, float], frictions: Sequence[float],
     before: ContactPatch | None, threads: Threads = nullcontext, known: KnownSolution | None = None,
-    exact: bool = False,
+    exact: bool = False, overlaps: bool = True,
 ) -> SharedPosition:
     """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
@@ -149,8 +124,8 @@ def shared_position(
         start of the position.
     threads: in which compliances are put together.
     known: how it was solved before, None where it was not; it replaces beyond_nominal and before.
-
     exact: solve the frictionless state to the end, also where no coefficient has it for its result; else to `START`.
+    overlaps: look for contact outside the window; else that is left to the caller, by `without_overlaps`.
 
     Raises NotConverged, SearchError.
     """
@@ -182,9 +157,10 @@ def shared_position(
         if contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= WIDENED
         elif abs(shift) <= nearest * RELOCATE * model.pair.pinion.normal_module:
-            unsearched = unsearched_overlaps(contact.geometry, model.teeth)
-            if overlap_outside(contact, unsearched, smooth.force, free_rotation(model, smooth)) == 0.0:
-                return SharedPosition(contact, system, smooth, unsearched)
+            position = SharedPosition(contact, system, smooth, ())
+            accepted = without_overlaps(model, position) if overlaps else position
+            if accepted is not None:
+                return accepted
             half_width = np.inf
         there, on = stand, model.load.on
         stand = _at_a_multiple(model, there.turned(on, float(smooth.motion[0])))
@@ -194,6 +170,15 @@ def shared_position(
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )
+
+
+def without_overlaps(model: GearModel, position: SharedPosition) -> SharedPosition | None:
+    """The position with where its flanks might touch outside the window; None where they do, so that it has to be
+    searched with whole flanks. Raises SearchError."""
+    contact, smooth = position.contact, position.smooth
+    unsearched = unsearched_overlaps(contact.geometry, model.teeth)
+    depth = overlap_outside(contact, unsearched, smooth.force, free_rotation(model, smooth))
+    return replace(position, unsearched=unsearched) if depth == 0.0 else None
 
 
 def _near_or_pressed(

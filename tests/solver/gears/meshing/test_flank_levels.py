@@ -4,11 +4,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from evolvent.gears.meshing.element_sizes import flank_needs
-from evolvent.gears.meshing.flank_levels import BODY_LAYER, SHEAR, levelled_sector
+from evolvent.gears.meshing.flank_levels import (
+    BODY_LAYER,
+    LONGEST,
+    ROUNDED_UP,
+    SHEAR,
+    length_over_height,
+    levelled_sector,
+)
+from evolvent.gears.meshing.levelled_meshes import has_long_cells, is_two_level
+from evolvent.gears.meshing.sector_sizes import finest_cells
 from evolvent.gears.problem.gear_problem import GearProblem, Level, MeshSettings
+from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.paper_pairs import yang
@@ -48,3 +59,52 @@ def test_layers_of_the_body_are_no_higher_than_wanted() -> None:
     wide = GearProblem(GearPair(pinion, wheel, yang().centre_distance), 250e3, mesh=MeshSettings("quick"))
     layers = levelled_sector(wide, Member.PINION).coarse.face_elements
     assert 40.0 / layers <= BODY_LAYER * pinion.normal_module
+
+
+def wide_pair(level: Level, torque: float, helix_angle: float = 15.0) -> GearProblem:
+    """23/47 teeth, m_n = 2 mm, b = 25 mm: a face along which the contact wants twice the fewest coarse layers."""
+    pinion, wheel = (
+        GearParameters.from_rack(
+            normal_module=2.0, normal_pressure_angle_deg=20.0, helix_angle_deg=helix_angle, z=z, face_width=25.0,
+            bore_diameter=bore, hand=hand if helix_angle else 1,
+        )
+        for z, bore, hand in ((23, 20.0, 1), (47, 30.0, -1))
+    )
+    distance = 70.0 / np.cos(np.radians(helix_angle))
+    return GearProblem(GearPair(pinion, wheel, distance), torque, mesh=MeshSettings(level))
+
+
+@pytest.mark.parametrize("level", ["quick", "standard", "fine"])
+def test_helical_flanks_have_no_cells_that_are_too_long_for_levels(level: Level) -> None:
+    """Wanted layers would leave cells six to seven times as long as high, and one mesh of each sector three times the
+    memory. Up to twice as many layers make them shorter; the levels halve these, so that the body has at most
+    ROUNDED_UP times its fewest layers."""
+    for torque in (100e3, 130e3, 160e3):
+        pair = wide_pair(level, torque)
+        assert not has_long_cells(pair)
+        for member in Member:
+            sector = levelled_sector(pair, member)
+            assert length_over_height(pair, member, *finest_cells(sector)) <= LONGEST
+            assert sector.coarse.face_elements <= ROUNDED_UP * 28  # 25 mm over 0.9 mm
+    assert is_two_level(wide_pair(level, 100e3))
+
+
+def test_spur_flanks_get_no_layers_for_levels() -> None:
+    """Cells of a spur pair are twenty times as long as high: layers that change that would cost more than one mesh."""
+    spur = wide_pair("standard", 100e3, 0.0)
+    assert has_long_cells(spur)
+    assert levelled_sector(spur, Member.PINION).coarse.face_elements <= ROUNDED_UP * 28
+
+
+def test_length_over_height_of_flank_cells() -> None:
+    """Twice the layers halve it, twice the rows double it; a spur flank's of as many rows and layers is its width over
+    the arc of its profile, (ρ_a² − ρ_s²)/(2 r_b)."""
+    pair = wide_pair("quick", 100e3, 0.0)
+    one = length_over_height(pair, Member.PINION, 10, 10)
+    assert length_over_height(pair, Member.PINION, 10, 20) == pytest.approx(one / 2)
+    assert length_over_height(pair, Member.PINION, 20, 10) == pytest.approx(one * 2)
+    gear = pair.pair.pinion
+    start = levelled_sector(pair, Member.PINION).coarse.flank_start_diameter
+    assert start is not None
+    arc = (gear.roll_length(gear.tip_diameter) ** 2 - gear.roll_length(start) ** 2) / (2.0 * gear.base_radius)
+    assert one == pytest.approx(25.0 / arc)

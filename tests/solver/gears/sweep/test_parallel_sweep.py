@@ -10,6 +10,7 @@ from typing import cast
 import pytest
 from mpi4py import MPI
 
+from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.fem.parallel.cores import Cores
@@ -17,8 +18,11 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import parallel_sweep
 from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
+from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from tests.support.gear_cases import model_of, spur_scene
 from tests.support.running.processes import RunScript
 
+OVERLAPS = 277  # the seed of a plane pair whose next tooth pair touches outside the window
 WHEEL_DRIVES = """
 import json, sys
 from dataclasses import replace
@@ -56,19 +60,39 @@ def test_a_position_that_cannot_be_prepared_is_left_to_each_rank(
     """Problem: a position whose search fails where a rank prepares it for all. Exact: nothing is prepared, so that each
     rank approaches it in smaller steps; another error is none of this."""
 
-    def failing(*_: object) -> None:
+    def failing(*_: object, **__: object) -> None:
         raise raised("as the test wants")
 
-    monkeypatch.setattr(parallel_sweep, "shared_position", failing)
-    comm, frictions = MPI.COMM_SELF, [0.1]
-    sweep = parallel_sweep._RankedSweep(
-        cast(GearModel, None), Pitch((0.0,)), frictions, {}, comm, Cores(comm), broadcasts=()
-    )
+    for name in ("shared_position", "without_overlaps"):
+        monkeypatch.setattr(parallel_sweep, name, failing)
+    sweep, state = ranked_sweep(cast(GearModel, None)), initial_state([0.1])
     raised: type[Exception] = error
-    assert sweep._prepared(range(1), initial_state(frictions)) is None
+    assert sweep._prepared(range(1), state) is None
+    raised = SearchError  # that of the whole flanks
+    assert sweep._accepted(cast(SharedPosition, None)) is None
     raised = ArithmeticError
     with pytest.raises(ArithmeticError):
-        sweep._prepared(range(1), initial_state(frictions))
+        sweep._prepared(range(1), state)
+    with pytest.raises(ArithmeticError):
+        sweep._accepted(cast(SharedPosition, None))
+
+
+def ranked_sweep(model: GearModel) -> parallel_sweep._RankedSweep:
+    """Of one position, alone."""
+    return parallel_sweep._RankedSweep(
+        model, Pitch((0.0,)), [0.1], {}, MPI.COMM_SELF, Cores(MPI.COMM_SELF), broadcasts=()
+    )
+
+
+def test_contact_outside_a_prepared_window_is_searched_anew() -> None:
+    """Problem: plane pairs prepared without a look outside the window; of one the next pair's tip edge overlaps there
+    by 70 µm. Exact: that one is not accepted; the other, at its nominal load, is, with the same state."""
+    for model, is_accepted in ((model_of(random_scene(OVERLAPS)), False), (model_of(spur_scene()), True)):
+        prepared = shared_position(model, 0.0, (0.0, 0.0), [0.0], None, overlaps=False)
+        accepted = ranked_sweep(model)._accepted(prepared)
+        assert (accepted is not None) == is_accepted
+        if accepted is not None:
+            assert accepted.smooth is prepared.smooth and accepted.system is prepared.system
 
 
 @pytest.mark.mpi

@@ -17,7 +17,7 @@ from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.frictional_position import solve_position
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.gears.sweep.position_search import RotationCourse, course_after, shared_position
+from evolvent.gears.sweep.position_search import course_after, shared_position
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, model_of, spur_scene, swept
@@ -116,16 +116,6 @@ def test_contact_line_between_two_rows_of_points_has_a_start() -> None:
     model = model_of(spur_scene("mesh.elements_per_contact_width=0.5"))
     for curve in swept(model, np.arange(0.1, 7.2, 0.4), [0.0]):
         assert np.abs(curve.torque_ratio - 1.0).max() < 0.05
-
-
-def test_rotation_that_changes_steadily_is_predicted_exactly() -> None:
-    """A rotation 0.1 + 0.3 φ of one gear and −0.2 φ of the other, known at 0.5 and 0.7: exact anywhere; known at one
-    angle, it is taken to stay."""
-    one = RotationCourse(0.5, (0.25, -0.1))
-    assert one.at(0.8) == (0.25, -0.1)
-    two = one.followed_by(0.7, (0.31, -0.14))
-    assert two.at(1.1) == pytest.approx((0.43, -0.22), rel=1e-12)
-    assert two.followed_by(0.7, (0.31, -0.14)).at(1.1) == pytest.approx((0.43, -0.22), rel=1e-12)
 
 
 def test_sweep_predicts_where_the_next_equilibrium_is(spur: GearModel) -> None:

@@ -67,6 +67,11 @@ class LoadedMesh:
             line=line,
         )
 
+    def without(self, number: int) -> LoadedMesh:
+        """The mesh under all torques but one, without further figures."""
+        errors, stiffness = (np.delete(values, number, axis=1) for values in (self.errors, self.stiffness))
+        return replace(self, torques=np.delete(self.torques, number), errors=errors, stiffness=stiffness, line=None)
+
     @property
     def forces(self) -> Floats:
         """(m,) mesh forces along the line of action, in the transverse section: torque over base radius [N]."""

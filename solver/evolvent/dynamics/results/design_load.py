@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.excitation.force_surface import SAME_LOAD, MeshExcitation
 from evolvent.dynamics.results.curves import LOADED, CoarseExcitation, pitch_curves
 from evolvent.dynamics.results.line_facts import line_facts
 from evolvent.gears.problem.iso_stiffness import stiffnesses
@@ -34,13 +34,14 @@ class ExcitationFacts:
     """Torques under which the excitation was solved, ascending."""
     design_torque_Nm: float | None
     """Torque under which the peak-to-peak transmission error is least, on the mesh force over deflection between the
-    torques that were solved; null where that is the lightest or the heaviest of them, or where there is one torque
-    only."""
+    torques that were solved; null where that is the lightest or the heaviest of them, or where there are fewer than
+    three."""
     design_peak_to_peak_um: float | None
     """Peak-to-peak transmission error under the design torque."""
     design_peak_to_peak_um_error: float | None
-    """Estimated error of the peak-to-peak transmission error under the design torque: that of the nearest torque; null
-    without error bars."""
+    """Estimated error of the peak-to-peak transmission error under the design torque: that of the nearest torque, and
+    what interpolation between torques adds, by how well the solved ones beside it follow from all others; null without
+    error bars."""
     design_from_Nm: float | None
     """Lightest torque around the design torque whose peak-to-peak value is larger by no more than the error: which
     torque from here to design_to_Nm is the design load is not known. Null without error bars."""
@@ -112,22 +113,46 @@ def _design(
     """Design torque [N·m], peak-to-peak value and its error [µm], and the range of torques [N·m] in which the design
     load lies."""
     forces = excitation.loaded.forces
-
-    def size(force: float) -> float:
-        return 1e3 * float(np.ptp(excitation.under(force)[0] + excitation.unloaded_error))
-
-    loads = np.linspace(forces[0], forces[-1], LOADS) if len(forces) > 1 else forces
-    sizes = np.array([size(float(force)) for force in loads])
+    if len(forces) < 3:
+        return None, None, None, None, None
+    loads = np.linspace(forces[0], forces[-1], LOADS)
+    sizes = np.array([_peak_to_peak(excitation, float(force)) for force in loads])
     i = int(np.argmin(sizes))
     if i in (0, len(loads) - 1):
         return None, None, None, None, None
-    best = float(minimize_scalar(size, bounds=(loads[i - 1], loads[i + 1]), method="bounded").x)
-    to_torque, least = 1e-3 * excitation.loaded.base_radius, size(best)
+    best = float(
+        minimize_scalar(
+            lambda force: _peak_to_peak(excitation, force), bounds=(loads[i - 1], loads[i + 1]), method="bounded"
+        ).x
+    )
+    to_torque, least = 1e-3 * excitation.loaded.base_radius, _peak_to_peak(excitation, best)
     curves = list(pitch_curves(excitation, companion))[int(np.argmin(np.abs(forces - best)))]
     error = curves[LOADED].peak_to_peak_error
     if not np.isfinite(error):
         return to_torque * best, least, None, None, None
+    error += _interpolation_error(excitation, best)
     alike = sizes <= least + error
     first = i - int(np.argmin(alike[i::-1])) + 1 if not alike[: i + 1].all() else 0
     last = i + int(np.argmin(alike[i:])) - 1 if not alike[i:].all() else len(loads) - 1
     return to_torque * best, least, float(error), to_torque * float(loads[first]), to_torque * float(loads[last])
+
+
+def _peak_to_peak(excitation: MeshExcitation, force: float) -> float:
+    """Peak-to-peak transmission error [µm] under a mesh force [N]."""
+    return 1e3 * float(np.ptp(excitation.under(force)[0] + excitation.unloaded_error))
+
+
+def _interpolation_error(excitation: MeshExcitation, force: float) -> float:
+    """Error of the peak-to-peak transmission error [µm] at a force [N] between two solved ones: the larger difference
+    between what was solved at these and what the other forces make of it, where they have one on either side. It is an
+    overestimate, as these gaps are wider. Zero where the force was solved."""
+    forces = excitation.loaded.forces
+    above = int(np.searchsorted(forces, force))
+    beside = [j for j in (above - 1, above) if 0 < j < len(forces) - 1]
+    if np.isclose(forces, force, rtol=SAME_LOAD).any():
+        return 0.0
+    found = []
+    for j in beside:
+        others = replace(excitation, loaded=excitation.loaded.without(j))
+        found.append(abs(_peak_to_peak(others, float(forces[j])) - _peak_to_peak(excitation, float(forces[j]))))
+    return max(found)

@@ -47,6 +47,38 @@ def test_design_load_between_torques() -> None:
     assert found.torques_Nm == pytest.approx((35.0, 70.0, 105.0, 140.0, 175.0))
 
 
+def curved(forces: tuple[float, ...]) -> MeshExcitation:
+    """A deflection F/k + a √(F F_0) cos τ on flanks with e = −b cos τ: its peak-to-peak value, 2 |a √(F F_0) − b|, has
+    its least at F = (b/a)²/F_0 = 4000/9 N and is curved there; b = 0.5 µm, a = 0.75 nm/N, F_0 = 1 kN."""
+    loads, b, a = np.array(forces), 0.5e-3, 0.75e-6
+    swing = a * np.sqrt(1000.0 * loads)
+    error = -b * COSINE
+    depths = loads / STIFFNESS + COSINE[:, None] * swing
+    stiffness = 1.0 / (1.0 / STIFFNESS + COSINE[:, None] * swing / (2.0 * loads))
+    loaded = LoadedMesh(np.arange(24.0), RADIUS * loads, RADIUS, error[:, None] + depths, stiffness)
+    return MeshExcitation(error, loaded)
+
+
+def test_error_of_the_design_load_holds_what_interpolation_adds() -> None:
+    """Problem: torques far apart beside the least value, which lies between two of them; at each the mesh and its
+    companion agree. Exact: 0 at 4000/9 N; the error, which is that of interpolation alone, holds it, and the value
+    under the torque that was found."""
+    for forces in ((100.0, 250.0, 900.0, 2500.0), (100.0, 300.0, 600.0, 1200.0, 2500.0)):
+        excitation = curved(forces)
+        found = facts(excitation, CoarseExcitation(excitation))
+        assert found.design_torque_Nm is not None and found.design_peak_to_peak_um is not None
+        exact = 2e3 * abs(0.75e-6 * np.sqrt(1e6 * found.design_torque_Nm / RADIUS) - 0.5e-3)
+        error = found.design_peak_to_peak_um_error
+        assert error is not None and abs(found.design_peak_to_peak_um - exact) < error < 1.0
+        assert found.design_from_Nm is not None and found.design_to_Nm is not None
+        assert found.design_from_Nm <= 1e-3 * RADIUS * 4000.0 / 9.0 <= found.design_to_Nm
+
+
+def test_two_torques_have_no_design_load() -> None:
+    """Between two torques nothing says how good interpolation is."""
+    assert facts(mesh(forces=(1500.0, 2000.0))).design_torque_Nm is None
+
+
 def test_stiffness_stands_beside_that_of_the_standard() -> None:
     """Exact: means over the pitch under 2500 N, of 20 mm of face; softness (1 + a cos τ)/k has mean stiffness
     k/√(1 − a²). He's pair has c' = 14.05 and c_γα = 22.01 N/(mm·µm) (docs/he2022.md). Gears that the formula is not

@@ -144,15 +144,17 @@ def _peak_to_peak(excitation: MeshExcitation, force: float) -> float:
 
 def _interpolation_error(excitation: MeshExcitation, force: float) -> float:
     """Error of the peak-to-peak transmission error [µm] at a force [N] between two solved ones: the larger difference
-    between what was solved at these and what the other forces make of it, where they have one on either side. It is an
-    overestimate, as these gaps are wider. Zero where the force was solved."""
+    between what was solved at these and what the other forces make of it, where they have one on either side, over the
+    square of how much wider the gap is then. Cubics do better in smooth curves; where tooth pairs come into contact
+    between two forces they do not. Zero where the force was solved."""
     forces = excitation.loaded.forces
     above = int(np.searchsorted(forces, force))
-    beside = [j for j in (above - 1, above) if 0 < j < len(forces) - 1]
     if np.isclose(forces, force, rtol=SAME_LOAD).any():
         return 0.0
-    found = []
-    for j in beside:
-        others = replace(excitation, loaded=excitation.loaded.without(j))
-        found.append(abs(_peak_to_peak(others, float(forces[j])) - _peak_to_peak(excitation, float(forces[j]))))
-    return max(found)
+    gap, found = forces[above] - forces[above - 1], []
+    for j in (above - 1, above):
+        if 0 < j < len(forces) - 1:
+            others = replace(excitation, loaded=excitation.loaded.without(j))
+            off = abs(_peak_to_peak(others, float(forces[j])) - _peak_to_peak(excitation, float(forces[j])))
+            found.append(off * (gap / (forces[j + 1] - forces[j - 1])) ** 2)
+    return float(max(found))

@@ -133,9 +133,9 @@ def _deflections(
     u = body.chain.apply(geometry.rows(gear)[0], geometry.flank_forces(gear, force), np.concatenate(rows))
     parts = np.split(u @ geometry.stand.rotation(gear, geometry.d).T, np.cumsum([len(each) for each in rows])[:-1])
     result = []
-    for (surface, _, xi), (_, place), part in zip(sides, found, parts):
+    for (surface, _, xi), (_, index), part in zip(sides, found, parts):
         N = tabulate(surface.shape, surface.order, xi)[0]
-        result.append(np.einsum("qk,qka->qa", N, part[place.reshape(N.shape)]))
+        result.append(np.einsum("qk,qka->qa", N, part[index.reshape(N.shape)]))
     return result
 
 

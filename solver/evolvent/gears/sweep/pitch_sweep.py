@@ -223,6 +223,7 @@ def _histories(
 
 
 def _first_history(model: GearModel, shared: SharedPosition, friction: float, span: float) -> FrictionHistory:
+    """Flanks that slide everywhere, to `START` only: what is wrong of it decays with the first positions anyway."""
     heading, system = nominal_direction(shared.contact.geometry, span), replace(shared.system, tolerance=START)
     return FrictionHistory.of(model, shared.contact, sliding(system, friction, heading, shared.smooth))
 

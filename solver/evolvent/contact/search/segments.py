@@ -86,15 +86,14 @@ def _bend(surface: Surface, facets: Ints) -> float:
     if surface.order == 1:
         return 0.0
     corners = reference_cell(surface.shape, surface.order).corners
-    ends, following = corners, np.roll(corners, -1, axis=0)
-    a, b, middle = (
-        surface.positions(facets, np.broadcast_to(xi, (len(facets), *xi.shape)))
-        for xi in (ends, following, 0.5 * (ends + following))
+    following = np.roll(corners, -1, axis=0)
+    a, b, middles = (
+        np.broadcast_to(xi, (len(facets), *xi.shape)) for xi in (corners, following, 0.5 * (corners + following))
     )
-    normal = surface.area_vectors(facets, np.broadcast_to(0.5 * (ends + following), (len(facets), *ends.shape)))
-    chord = b - a
-    across = cross(chord, normal)
-    off = np.abs(dot(middle - 0.5 * (a + b), across))
+    start, end, middle = (surface.positions(facets, xi) for xi in (a, b, middles))
+    chord = end - start
+    across = cross(chord, surface.area_vectors(facets, middles))
+    off = np.abs(dot(middle - 0.5 * (start + end), across))
     return float((off / np.sqrt(dot(across, across) * dot(chord, chord))).max())
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -115,17 +116,13 @@ def _design(
     forces = excitation.loaded.forces
     if len(forces) < 3:
         return None, None, None, None, None
-    loads = np.linspace(forces[0], forces[-1], LOADS)
-    sizes = np.array([_peak_to_peak(excitation, float(force)) for force in loads])
+    size, loads = partial(_peak_to_peak, excitation), np.linspace(forces[0], forces[-1], LOADS)
+    sizes = np.array([size(float(force)) for force in loads])
     i = int(np.argmin(sizes))
     if i in (0, len(loads) - 1):
         return None, None, None, None, None
-    best = float(
-        minimize_scalar(
-            lambda force: _peak_to_peak(excitation, force), bounds=(loads[i - 1], loads[i + 1]), method="bounded"
-        ).x
-    )
-    to_torque, least = 1e-3 * excitation.loaded.base_radius, _peak_to_peak(excitation, best)
+    best = float(minimize_scalar(size, bounds=(loads[i - 1], loads[i + 1]), method="bounded").x)
+    to_torque, least = 1e-3 * excitation.loaded.base_radius, size(best)
     curves = list(pitch_curves(excitation, companion))[int(np.argmin(np.abs(forces - best)))]
     error = curves[LOADED].peak_to_peak_error
     if not np.isfinite(error):

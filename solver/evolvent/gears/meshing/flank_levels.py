@@ -17,6 +17,7 @@ from evolvent.gears.meshing.element_sizes import (
     sector_resolution,
 )
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.axial_layers import fewest_layers
 from evolvent_meshes.sector.section import SectorResolution
@@ -68,7 +69,8 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     count = max(1, round(math.log2(needs.rows / BODY_ROWS)))
     rows = 3 * max(LEAST_ROWS, math.ceil(needs.rows / 2**count / 3))
     wanted = max(LEAST_LAYERS[level], math.ceil(needs.shear / SHEAR[level]))
-    shortest = math.ceil(length_over_height(problem, member, rows * 2**count, 1) / LONGEST)
+    resolution = sector_resolution(problem, member)
+    shortest = math.ceil(length_over_height(gear, resolution, rows * 2**count, 1) / LONGEST)
     if shortest <= LENGTHENED * wanted:
         wanted = max(wanted, shortest)
     coarsest = math.ceil(gear.face_width / (BODY_LAYER * gear.normal_module))
@@ -77,7 +79,7 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     layers = max(coarsest, math.ceil(wanted / math.prod(factors)), 2 * fewest_layers(gear))
     depths = LAYER_DEPTHS * DEEPEST * gear.normal_module / float(LAYER_DEPTHS.sum())
     coarse = replace(
-        sector_resolution(problem, member), profile_elements=rows, face_elements=layers, end_size_ratio=1.0,
+        resolution, profile_elements=rows, face_elements=layers, end_size_ratio=1.0,
         graded_middles=True,
         layer_depths=(float(depths[0]), float(depths[1]), float(depths[2])),
     )
@@ -86,10 +88,12 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     return LevelledSector(coarse, tuple(levels[: max(1, math.ceil(math.log2(wanted_rows / rows) - 1e-9))]))
 
 
-def length_over_height(problem: GearProblem, member: Member, rows: int, layers: int) -> float:
-    """Length of a flank's cells along the face over that along the profile, on average, of a number of each."""
-    gear = problem.pair.gears[member]
-    lowest = sector_resolution(problem, member).flank_start_diameter or gear.root_form_diameter
+def length_over_height(gear: GearParameters, resolution: SectorResolution, rows: int, layers: int) -> float:
+    """Length of a flank's cells along the face over that along the profile, on average, of a number of each.
+
+    resolution: of the gear's sector, which says where the flank starts.
+    """
+    lowest = resolution.flank_start_diameter or gear.root_form_diameter
     start, tip = gear.roll_length(lowest), gear.roll_length(gear.tip_diameter)
     arc = (tip**2 - start**2) / (2.0 * gear.base_radius)
     along_face = gear.face_width / np.cos(np.radians(gear.helix_angle_deg)) / layers
@@ -102,7 +106,7 @@ def _layer_factors(count: int, refined: float) -> list[int]:
     factor = max(1, round(refined ** (1 / count)))
     if factor > 1:
         return [factor] * count
-    halved = min(count, max(0, math.floor(math.log(refined) / math.log(ROUNDED_UP)))) if refined > 1.0 else 0
+    halved = int(math.log(max(refined, 1.0), ROUNDED_UP))  # fewer than count, or the factor were 2
     return [2] * halved + [1] * (count - halved)
 
 

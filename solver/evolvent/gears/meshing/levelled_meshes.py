@@ -63,8 +63,8 @@ def has_long_cells(problem: GearProblem) -> bool:
 def _cell_lengths(problem: GearProblem, member: Member) -> float:
     """Length of the finest flank cells along the face over that along the profile, on average; of the lightest torque
     that the meshes serve, so that all torques of a list have levels or none."""
-    rows, layers = finest_cells(levelled_sector(problem.lightest, member))
-    return length_over_height(problem.lightest, member, rows, layers)
+    sector = levelled_sector(problem.lightest, member)
+    return length_over_height(problem.pair.gears[member], sector.coarse, *finest_cells(sector))
 
 
 def run_mesh(problem: GearProblem, member: Member) -> SectorMesh:

@@ -84,7 +84,7 @@ def test_helical_flanks_have_no_cells_that_are_too_long_for_levels(level: Level)
         assert not has_long_cells(pair)
         for member in Member:
             sector = levelled_sector(pair, member)
-            assert length_over_height(pair, member, *finest_cells(sector)) <= LONGEST
+            assert length_over_height(pair.pair.gears[member], sector.coarse, *finest_cells(sector)) <= LONGEST
             assert sector.coarse.face_elements <= ROUNDED_UP * 28  # 25 mm over 0.9 mm
     assert is_two_level(wide_pair(level, 100e3))
 
@@ -100,11 +100,11 @@ def test_length_over_height_of_flank_cells() -> None:
     """Twice the layers halve it, twice the rows double it; a spur flank's of as many rows and layers is its width over
     the arc of its profile, (ρ_a² − ρ_s²)/(2 r_b)."""
     pair = wide_pair("quick", 100e3, 0.0)
-    one = length_over_height(pair, Member.PINION, 10, 10)
-    assert length_over_height(pair, Member.PINION, 10, 20) == pytest.approx(one / 2)
-    assert length_over_height(pair, Member.PINION, 20, 10) == pytest.approx(one * 2)
-    gear = pair.pair.pinion
-    start = levelled_sector(pair, Member.PINION).coarse.flank_start_diameter
+    gear, coarse = pair.pair.pinion, levelled_sector(pair, Member.PINION).coarse
+    one = length_over_height(gear, coarse, 10, 10)
+    assert length_over_height(gear, coarse, 10, 20) == pytest.approx(one / 2)
+    assert length_over_height(gear, coarse, 20, 10) == pytest.approx(one * 2)
+    start = coarse.flank_start_diameter
     assert start is not None
     arc = (gear.roll_length(gear.tip_diameter) ** 2 - gear.roll_length(start) ** 2) / (2.0 * gear.base_radius)
     assert one == pytest.approx(25.0 / arc)

@@ -78,7 +78,7 @@ def test_a_position_that_cannot_be_prepared_is_left_to_each_rank(
 
 
 def ranked_sweep(model: GearModel) -> parallel_sweep._RankedSweep:
-    """Of one position, alone."""
+    """Sweep of one position on one rank."""
     return parallel_sweep._RankedSweep(
         model, Pitch((0.0,)), [0.1], {}, MPI.COMM_SELF, Cores(MPI.COMM_SELF), broadcasts=()
     )

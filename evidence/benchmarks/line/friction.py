@@ -26,8 +26,11 @@ from evolvent_meshes.arrays import Floats
 FRICTION, POSITIONS = 0.1, 20
 PAIRS: tuple[tuple[str, float], ...] = (
     ("He, plane", 30.0), ("He, plane", 100.0), ("He, linear relief, plane", 100.0), ("He, lead crowning", 30.0),
-    ("He, lead crowning", 100.0), ("He, half the face, lead crowning", 5.0), ("Yang, relieved", 30.0),
-    ("Yang, relieved", 100.0),
+    ("He, lead crowning", 100.0), ("He, half the face, lead crowning", 5.0), ("He, misaligned 20 µm", 100.0),
+    ("He, half the face, misaligned 20 µm", 10.0), ("He, half the face, misaligned 20 µm", 30.0),
+    ("Yang, relieved", 5.0), ("Yang, relieved", 30.0), ("Yang, relieved", 100.0), ("Yang, misaligned 20 µm", 10.0),
+    ("Yang, misaligned 20 µm", 30.0), ("Yang, misaligned 20 µm", 100.0),
+    ("Yang, half the face, misaligned 20 µm", 30.0), ("Yang, half the face, misaligned 20 µm", 100.0),
 )
 """Pair and torque in percent."""
 

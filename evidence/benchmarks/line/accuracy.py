@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from evidence.benchmarks.line.bars import beyond_bars
 from evidence.benchmarks.line.pairs import ALL, Case, random_cases
 from evidence.benchmarks.line.resolved import ResolvedLoad, ResolvedPitch, resolved_pitch
 from evidence.checkout import DOCS
@@ -238,34 +239,18 @@ BARS: tuple[tuple[str, str, float], ...] = (
     ("p_0 by the load", "pressure_by_load_percent", 1.5),
 )
 """Figure, its column and its bar [%]."""
-PEAK_BAR_PERCENT, PEAK_BAR_UM = 1.0, 0.02
-"""Bars of the peak-to-peak transmission error, of which the larger one counts."""
 
 
 def beyond(docs: Path) -> str:
     """Sentence of docs/line_contact.md on rows beyond the bars, of those where no edge bears."""
     rows = [row for row in TABLE.read(docs / "line_contact" / "accuracy.csv") if row.on_edges_percent < 1.0]
-    off = [max(0.0, abs(row.peak_to_peak_off_um) - PEAK_BAR_UM) and _peak_off_percent(row) for row in rows]
-    parts = [_part("peak to peak", off, PEAK_BAR_PERCENT)]
-    for name, column, bar in BARS:
-        parts.append(_part(name, [abs(getattr(row, column)) for row in rows], bar))
     held = sum(row.inside for row in rows), sum(row.positions for row in rows)
     space = [row for row in rows if row.face_load_factor > 1.0]  # it is 1 in the plane
     return (
-        f"Beyond the bars, of {len(rows)} rows: {'; '.join(filter(None, parts))}. Error bars hold at {held[0]} of "
+        f"Beyond the bars, of {len(rows)} rows: {beyond_bars(rows, BARS)}. Error bars hold at {held[0]} of "
         f"{held[1]} positions, {sum(row.peak_to_peak_inside for row in rows)} of {len(rows)} peak-to-peak values and "
         f"{sum(row.face_load_inside for row in space)} of {len(space)} face load factors in space."
     )
-
-
-def _peak_off_percent(row: LineRow) -> float:
-    return 100.0 * abs(row.peak_to_peak_off_um) / row.peak_to_peak_um
-
-
-def _part(name: str, off: list[float], bar: float) -> str:
-    """Words on the deviations [%] beyond a bar; empty where there is none."""
-    over = [each for each in off if each > bar]
-    return f"{name} {len(over)}, by up to {max(over):.2g} for {bar:g} %" if over else ""
 
 
 def main() -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
+from evidence.benchmarks.line.bars import beyond_bars
 from evidence.benchmarks.line.pairs import ALL
 from evidence.benchmarks.measuring import keep_rows
 from evidence.tables import Column, Table
@@ -33,6 +34,11 @@ PAIRS: tuple[tuple[str, float], ...] = (
     ("Yang, half the face, misaligned 20 µm", 30.0), ("Yang, half the face, misaligned 20 µm", 100.0),
 )
 """Pair and torque in percent."""
+BARS: tuple[tuple[str, str, float], ...] = (
+    ("a position", "position_percent", 0.3), ("tooth forces", "tooth_force_percent", 0.5),
+    ("loss", "loss_off_percent", 1.0),
+)
+"""Figure, its column and its bar [%]."""
 
 
 @dataclass(frozen=True)
@@ -146,8 +152,9 @@ class _Both:
 
 
 def said(docs: Path) -> str:
-    """The table of docs/line_contact.md."""
-    return TABLE.markdown(TABLE.read(docs / "line_contact" / "friction.csv"))
+    """The table of docs/line_contact.md, and what in it is beyond the bars."""
+    rows = TABLE.read(docs / "line_contact" / "friction.csv")
+    return f"{TABLE.markdown(rows)}\n\nBeyond the bars, of {len(rows)} pitches: {beyond_bars(rows, BARS)}."
 
 
 def main() -> None:

@@ -51,7 +51,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "gears.contact": (
         "meshes", "meshes.gears", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton",
-        "gears.ring", "gears",
+        "gears.ring", "gears.two_level", "gears",
     ),
     "gears.sweep": (
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",

@@ -50,7 +50,8 @@ class FullContact:
         """Values of the contact law at x."""
         u, δ = x[: self.K.shape[0]], x[self.K.shape[0] :]
         jump = (self.trial @ u + self.prescribed + self.condensed.motion @ δ).reshape(len(self.op.nodes), -1)
-        return self.law(self.op.trial(jump, self.slip))
+        slip = None if self.slip is None else self.op.shape @ self.slip
+        return self.law(self.op.trial(jump, slip))
 
     def residual(self, x: Floats) -> Floats:
         """Residual forces and moments, (size,) [N, N·mm]."""

@@ -30,6 +30,8 @@ from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.meshing.root_meshes import root_nodes
 from evolvent.gears.ring.chain_settings import ChainSettings
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, Compliance
+from evolvent.gears.two_level.flank_cells import FlankCells
+from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
@@ -96,6 +98,12 @@ class GearBody:
         """Transverse involute curvature radius √(r² − r_b²) (n,) at the flank's nodes [mm]."""
         r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
         return np.sqrt(np.maximum(r**2 - self.gear.base_radius**2, 0.0))
+
+    @cached_property
+    def cells(self) -> FlankCells:
+        """Facets of the flank by row and layer, of a gear whose flank has levels."""
+        assert isinstance(self.chain, TwoLevelRing)
+        return FlankCells.of(self.chain.levels[-1].correction.lattice, self.flank, self.gear.base_radius)
 
     @cached_property
     def tip_zone(self) -> Bools:

@@ -4,8 +4,7 @@ With A ≈ A_b + U K Uᵀ, A_b block-diagonal, and only the columns S of M = ∂
 
     (I + A_b M_S) z = A_b b + U w − H δ ,   K⁻¹ w = Uᵀ f ,   Hᵀ f + D δ = c .
 
-Each block is banded, as only nodes near each other along a contact line are coupled in it; it is factored by itself,
-and a system of the size of (w, δ) couples the blocks (Woodbury).
+Each block is factored by itself, and a system of the size of (w, δ) couples the blocks (Woodbury).
 """
 
 from __future__ import annotations
@@ -16,13 +15,11 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.linalg import lu_factor, lu_solve
 
-from evolvent.contact.newton.band_factor import BandFactor
 from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.newton.tiled_band import TiledBand
-from evolvent_meshes.arrays import Bools, Floats, Ints, Reals
+from evolvent_meshes.arrays import Bools, Floats, Ints, Reals, Singles
 
 TANGENTIAL = 1.2
 """Tangential over normal compliance of the surface of a half-space, (1 − ν/2)/(1 − ν) at ν = 0.3 (Johnson 1985, 3.2 and
@@ -35,12 +32,12 @@ NEGLIGIBLE = 1e-3
 class NearlyNormal:
     """Approximate compliance of n nodes with k components: blocks of normal components, and modes of all components.
 
-    blocks: (n_i, n_i) of consecutive nodes, symmetric, sparse, in single precision [mm/N].
+    blocks: (n_i, n_i) of consecutive nodes, symmetric, in single precision [mm/N].
     modes: U (n·k, r).
     couplings: diagonal of K (r,), not zero [mm/N].
     """
 
-    blocks: tuple[sp.csr_matrix, ...]
+    blocks: tuple[Singles, ...]
     modes: Floats
     couplings: Floats
 
@@ -75,7 +72,7 @@ class NearlyNormal:
     @property
     def nbytes(self) -> int:
         """Memory [bytes]."""
-        return self.modes.nbytes + sum(block.data.nbytes + block.indices.nbytes for block in self.blocks)
+        return self.modes.nbytes + sum(block.nbytes for block in self.blocks)
 
     @staticmethod
     def sum(parts: Sequence[NearlyNormal]) -> NearlyNormal:
@@ -99,59 +96,47 @@ def few_modes(modes: Floats, couplings: Floats) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class RoughContact:
-    """One contact, between its nodes with active unknowns, in an order that leaves few diagonals.
+    """One contact, between its nodes with active unknowns.
 
-    normal: (a,) places among the active unknowns of its nodes' normal components, in the order.
-    near: (u_i,) places of all its active unknowns.
-    rank: (u_i,) place in the order of the node of each.
+    near: (u_i,) places of these among the active unknowns of all contacts.
+    node: (u_i,) index of the node of each.
     axis: (u_i,) its component.
-    A: (a, a) rough compliance between the normal components.
+    A: (a, a) rough compliance between the normal components of its nodes, in single precision.
     """
 
-    normal: Ints
     near: Ints
-    rank: Ints
+    node: Ints
     axis: Ints
-    A: sp.csr_matrix
+    A: Singles
 
     @staticmethod
-    def of(block: sp.csr_matrix, near: Ints, node: Ints, axis: Ints) -> RoughContact:
+    def of(block: Singles, near: Ints, node: Ints, axis: Ints) -> RoughContact:
         """One contact from the compliance `block` of its nodes; `node` and `axis` (u_i,) of its active unknowns."""
-        nodes = node[axis == 0]
-        A = block[nodes][:, nodes]
-        order = reverse_cuthill_mckee(A, symmetric_mode=True)
-        rank = np.full(block.shape[0], -1)
-        rank[nodes[order]] = np.arange(len(order))
-        return RoughContact(near[axis == 0][order], near, rank[node], axis, A[order][:, order])
-
-    @cached_property
-    def band(self) -> TiledBand:
-        """A as tiles."""
-        return TiledBand.of(self.A.tocsc())
+        nodes, place = np.unique(node, return_inverse=True)
+        return RoughContact(near, place, axis, block[np.ix_(nodes, nodes)])
 
     def part(self, kept: Bools) -> RoughPart:
         """The part that a tangent needs. kept: (u,) whether it keeps the column of each active unknown."""
-        tangential = (self.axis > 0) & kept[self.near]
-        if not tangential.any():
-            return RoughPart(self.normal, self.normal, self.A, self.band)
-        mine = np.flatnonzero(tangential | (self.axis == 0))
-        mine = mine[np.lexsort((self.axis[mine], self.rank[mine]))]
-        A = _of_components(self.A[self.rank[mine]], self.rank, self.axis[mine], self.axis)
-        return RoughPart(self.near[mine], self.near, A, TiledBand.of(A[:, mine].tocsc()))
+        mine = np.flatnonzero((self.axis == 0) | kept[self.near])
+        axis = self.axis[mine]
+        scale = np.where(axis > 0, np.float32(TANGENTIAL), np.float32(1.0))
+        A = self.A[np.ix_(self.node[mine], self.node)] * (scale[:, None] * (axis[:, None] == self.axis))
+        return RoughPart(self.near[mine], self.near, A, A[:, mine])
 
 
 @dataclass(frozen=True)
 class RoughPart:
-    """Rough compliance of one contact from its active unknowns `near` (u_i,) to its unknowns `rows` (s_i,).
+    """Rough compliance of one contact from its active unknowns `near` (u_i,) to its unknowns `rows` (s_i,): none
+    between different components, more between tangential ones.
 
     A: (s_i, u_i).
-    band: (s_i, s_i) among the rows.
+    among: (s_i, s_i) between the rows.
     """
 
     rows: Ints
     near: Ints
-    A: sp.csr_matrix
-    band: TiledBand
+    A: Singles
+    among: Singles
 
 
 @dataclass(frozen=True)
@@ -184,8 +169,7 @@ class BlockInverse:
     rough: approximate compliance A between the active unknowns (u,).
     M: (u, u) among them.
     motions: H (u, r) among them and D (r, r).
-    kept: columns of M that are not left out. S has the normal components of all nodes beside these: so the order of a
-        contact's unknowns, and its tiles, hardly ever change from step to step.
+    kept: columns of M that are not left out. S has the normal components of all nodes beside these.
 
     Raises NotConverged where a free rigid motion meets no resistance.
     """
@@ -197,9 +181,9 @@ class BlockInverse:
         rows = np.concatenate([np.zeros(0, dtype=int), *(part.rows for part in self._parts)])
         self._ends = np.cumsum([0] + [len(part.rows) for part in self._parts])
         self._M = _columns(M, rows, is_kept)
-        among = self._M[rows].tocsc()
+        M = self._M[rows].T.tocsr()
         self._factors = [
-            BandFactor(part.band, among[start:end, start:end])
+            _factored(part.among, M[start:end, start:end])
             for part, start, end in zip(self._parts, self._ends, self._ends[1:])
         ]
         self._smooth = np.hstack([rough.modes, -motions.jumps])
@@ -232,8 +216,18 @@ class BlockInverse:
         """Solution (I + A_b M_S)⁻¹ right of all contacts, (s,) or (s, c), good to single precision."""
         result = np.empty(right.shape)
         for factor, start, end in zip(self._factors, self._ends, self._ends[1:]):
-            result[start:end] = factor.solve(right[start:end].astype(np.float32, copy=False))
+            result[start:end] = lu_solve(factor, right[start:end].astype(np.float32, copy=False), check_finite=False)
         return result
+
+
+def _factored(A: Singles, M: sp.csr_matrix) -> tuple[Singles, Ints]:
+    """LU factors of I + A Mᵀ. Raises NotConverged where it is singular."""
+    T = (M @ A.T).T  # A is symmetric, but for the components that its rows leave out
+    T[np.diag_indices(len(T))] += 1.0
+    factor, pivots = lu_factor(T, overwrite_a=True, check_finite=False)
+    if not np.all(np.diag(factor)):
+        raise NotConverged("contact: wanted a tangent that can be inverted, found a singular one")
+    return factor, pivots
 
 
 def _columns(M: sp.csr_matrix, rows: Ints, kept: Bools) -> sp.csr_matrix:
@@ -245,18 +239,3 @@ def _columns(M: sp.csr_matrix, rows: Ints, kept: Bools) -> sp.csr_matrix:
     used = column >= 0
     ends = np.append(0, np.cumsum(used))[M.indptr]
     return sp.csr_matrix((M.data[used], column[used], ends), (M.shape[0], len(rows)))
-
-
-def _of_components(block: sp.csr_matrix, node: Ints, rows: Ints, columns: Ints) -> sp.csr_matrix:
-    """Compliance (s, u) between unknowns from that of normal components (s, nodes): none between different components,
-    more between tangential ones. node: (u,); rows, columns: their components."""
-    parts, order = [], []
-    for axis in np.unique(rows):
-        of_axis, here = np.flatnonzero(columns == axis), np.flatnonzero(rows == axis)
-        part = block[here][:, node[of_axis]]
-        values = part.data * np.float32(TANGENTIAL if axis else 1.0)
-        parts.append(sp.csr_matrix((values, of_axis[part.indices], part.indptr), (len(here), len(columns))))
-        order.append(here)
-    if len(parts) == 1:
-        return parts[0]
-    return sp.vstack(parts, format="csr")[np.argsort(np.concatenate(order))]

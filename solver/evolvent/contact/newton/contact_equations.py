@@ -69,7 +69,7 @@ class CondensedSystem:
     @property
     def k(self) -> int:
         """Number of local components a node: 1 (normal) or d."""
-        return len(self.jump) // len(self.operator.nodes)
+        return len(self.jump) // self.operator.n
 
     def jumps(self, force: Floats, motion: Floats) -> Floats:
         """J (n, k) [mm] from nodal forces (n, k) [N] and amplitudes of the motions (r,)."""
@@ -102,7 +102,7 @@ class ContactEquations:
 
     def __init__(self, system: CondensedSystem, law: ContactLaw, slip: Floats | None = None) -> None:
         self.system, self.law, self.slip = system, law, slip
-        self.n, self.k, self.r = len(system.operator.nodes), system.k, len(system.load)
+        self.n, self.k, self.r = system.operator.n, system.k, len(system.load)
         self._last: tuple[Floats, _State] | None = None
 
     def split(self, x: Floats) -> tuple[Floats, Floats]:

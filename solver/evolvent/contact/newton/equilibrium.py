@@ -133,7 +133,7 @@ def frictional(
     """Equilibrium with Coulomb friction.
 
     friction: coefficient μ, a number or (q,).
-    slip: (n, d−1) slip since the last state, without that of the current displacement [mm].
+    slip: (q, d−1) slip at the points since the last state, without that of the current displacement [mm].
     heading: (q, d−1) unit direction of slip where it is known, else zero.
     start: the equilibrium without friction, or `stuck`.
     near: a guess of the solution, tried first.

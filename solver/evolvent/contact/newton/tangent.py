@@ -86,6 +86,6 @@ def _columns(M: sp.csr_matrix) -> Bools:
 def _sticking_nodes(operator: ContactOperator, law: LawValues) -> Bools:
     """Nodes (n,) bool of facets with a point whose traction changes with the tangential jump."""
     sticking = np.abs(law.derivative[:, 1:, 1:]).max(axis=(1, 2), initial=0.0) > SLIDING
-    near = np.zeros(len(operator.nodes), dtype=bool)
+    near = np.zeros(operator.n, dtype=bool)
     near[operator.shape[np.flatnonzero(sticking)].indices] = True
     return near

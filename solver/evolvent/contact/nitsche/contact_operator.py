@@ -4,7 +4,7 @@ The jump between the bodies lives in the space of surface 1: J = e_1 − Πu_2 a
 trace of body 1 and Π the L2 projection of body 2's trace along the normals of surface 1 (a mortar method: integrated
 over segments, so that non-matching meshes pass the patch test). The contact law holds at the quadrature points x_q:
 
-    p(x) = γ(x) [Σ_k N_k(x) n_k·J_k − g(x)] ,   q(x) = γ_t(x) Σ_k N_k(x) (J_k + s_k)_t
+    p(x) = γ(x) [Σ_k N_k(x) n_k·J_k − g(x)] ,   q(x) = γ_t(x) [Σ_k N_k(x) J_k + s(x)]_t
     λ = [p]_+ ,  τ = P_B(μλ)(q)                                   (local components, frames at the nodes)
     f_k = ∫ N_k (λ, τ) dΓ
 
@@ -20,13 +20,14 @@ from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 from scipy.spatial import cKDTree
 
 from evolvent.contact.nitsche.coulomb import LawValues
+from evolvent.contact.nitsche.jump_space import BEYOND, JumpSpace
 from evolvent.contact.nitsche.mortar_projection import MortarProjection
+from evolvent.contact.nitsche.surface_mass import SurfaceMass
 from evolvent.contact.search.pairing import Pairing
-from evolvent.fem.lagrange import quadrature, tabulate
+from evolvent.fem.lagrange import tabulate
 from evolvent.fem.nodal_frames import tangent_frames
 from evolvent.fem.reference_facets import hats
 from evolvent.fem.surface import Surface
@@ -40,13 +41,15 @@ ContactLaw = Callable[[Floats], LawValues]
 class ContactOperator:
     """Jump at n nodes of surface 1 and contact at q points on it, in the common frame.
 
-    nodes: (n,) indices of the nodes in surface 1.
+    nodes: (m,) indices of the nodes in surface 1 about the points; of a jump in the space of surface 1 m = n.
     frames: (n, d, d) nodal frames, rows normal, t1[, t2].
     jump1: (n, n1) and
     jump2: (n, n2) weights of the jump J = jump1·e_1 − jump2·u_2.
-    mass: (n, n) ∫N_k N_l where the bodies are placed [mm²; mm in 2D].
-    shape: (q, n) shape functions at the points.
-    hat: (q, n) piecewise linear hat functions at the points.
+    mass: (m, m) ∫N_k N_l on surface 1 where the bodies are placed, of a jump in a space of its own at the points
+        [mm²; mm in 2D].
+    trace: (q, m) shape functions of surface 1 at the points.
+    shape: (q, n) shape functions of the jump at the points.
+    hat: (q, m) piecewise linear hat functions of surface 1 at the points.
     points: (q, d) positions [mm].
     weights: (q,) quadrature weights [mm²; mm in 2D].
     gap: (q,) gaps without displacement [mm].
@@ -55,15 +58,21 @@ class ContactOperator:
 
     nodes: Ints
     frames: Floats
-    jump1: sp.csr_matrix
+    jump1: sp.csr_matrix | MortarProjection
     jump2: MortarProjection
-    mass: sp.csr_matrix
+    mass: SurfaceMass
+    trace: sp.csr_matrix
     shape: sp.csr_matrix
     hat: sp.csr_matrix
     points: Floats
     weights: Floats
     gap: Floats
     stabiliser: Floats
+
+    @property
+    def n(self) -> int:
+        """Number of nodes of the jump."""
+        return len(self.frames)
 
     @property
     def d(self) -> int:
@@ -95,13 +104,12 @@ class ContactOperator:
         return replace(self, gap=self.gap + depth, stabiliser=np.column_stack([γ / (1.0 + γ * softness), γ_t]))
 
     def trial(self, jump: Floats, slip: Floats | None = None) -> Floats:
-        """Trial tractions (q, k) [MPa] from local jumps (n, k) [mm], k = 1 (normal only) or d; slip: (n, d−1), added to
-        the tangential jump."""
-        k = jump.shape[1]
-        if slip is not None and k > 1:
-            jump = jump + np.hstack([np.zeros((len(jump), 1)), slip])
-        at_points = self.shape @ jump
+        """Trial tractions (q, k) [MPa] from local jumps (n, k) [mm], k = 1 (normal only) or d; slip: (q, d−1), added to
+        the tangential jump at the points."""
+        k, at_points = jump.shape[1], self.shape @ jump
         at_points[:, 0] -= self.gap
+        if slip is not None and k > 1:
+            at_points[:, 1:] += slip
         return at_points * self.slope(k)
 
     def slope(self, k: int) -> Floats:
@@ -125,13 +133,23 @@ class ContactOperator:
         return m, mean / np.where(m > 0.0, m, 1.0)[:, None]
 
     def flux(self, traction: Floats) -> Floats:
-        """F = Γ⁻¹S (n, d) [mm] at the nodes in the common frame, from tractions at the points (q, d) [MPa].
+        """F = Γ⁻¹S (m, d) [mm] at the nodes of surface 1 in the common frame, from point tractions (q, d) [MPa].
 
         At a converged state the recovered traction S is −(λn + τ), and the trace of body 1 is u_1 = e_1 + F. F is
         projected, not averaged: repeating it in the next step changes nothing, and no traction is smoothed.
         """
-        local = spla.splu(self.mass.tocsc()).solve(self.forces(traction / self.slope(self.d)))
-        return -np.einsum("jia,ji->ja", self.frames, local)
+        moved = self.weights[:, None] * self.common(traction / self.slope(self.d))
+        return -self.mass.solved(self.trace.T @ moved)
+
+    def projected(self, values: Floats) -> Floats:
+        """Values (n, c) at the nodes of the jump from those at the nodes of surface 1 (m, c)."""
+        return self.jump1.of_columns() @ values if isinstance(self.jump1, MortarProjection) else values
+
+    def gathered(self, forces: Floats) -> Floats:
+        """Forces (n, c) on the nodes of the jump from forces (m, c) on those of surface 1: of the same tractions."""
+        if not isinstance(self.jump1, MortarProjection):
+            return forces
+        return np.asarray(self.jump1.of_columns().mixed @ self.mass.solved(forces))
 
     def common(self, traction: Floats) -> Floats:
         """Vectors (q, d) in the common frame from local components (q, k)."""
@@ -141,8 +159,9 @@ class ContactOperator:
     def local_map(self, side: int, rotation: Floats) -> sp.csr_matrix:
         """Matrix (n·d, n_s·d) from displacements of surface `side` (1 or 2), in its body's frame, to local jumps, with
         the sign of the jump; rotation: (d, d), from the body's frame to the common one."""
-        jump, sign = (self.jump1, 1.0) if side == 1 else (self.jump2.matrix(), -1.0)
-        return frames_times(self.frames @ rotation * sign, jump)
+        jump, sign = (self.jump1, 1.0) if side == 1 else (self.jump2, -1.0)
+        weights = jump.matrix() if isinstance(jump, MortarProjection) else jump
+        return frames_times(self.frames @ rotation * sign, weights)
 
 
 def frames_times(frames: Floats, weights: sp.csr_matrix) -> sp.csr_matrix:
@@ -182,7 +201,8 @@ def _facet_blocks(N: sp.csr_matrix, D: Floats, width: int) -> tuple[Ints, Ints, 
 
 
 def contact_operator(
-    pairing: Pairing, first: Surface, second: Surface, stabiliser: Floats, frames: Floats, facets: Ints | None = None
+    pairing: Pairing, first: Surface, second: Surface, stabiliser: Floats, frames: Floats,
+    facets: Ints | None = None, jumps: JumpSpace | None = None,
 ) -> ContactOperator:
     """The operator on the quadrature points of a pairing.
 
@@ -190,6 +210,7 @@ def contact_operator(
     stabiliser: (n1, 2) γ and γ_t at the nodes of surface 1 [MPa/mm].
     frames: (n1, d, d) at the nodes of surface 1.
     facets: those of surface 1 in whose space the jump lies; by default those that have a point.
+    jumps: the space of the jump, None: that of surface 1.
     """
     facets = np.unique(pairing.facet1) if facets is None else facets
     nodes = np.unique(first.facets[facets])
@@ -199,16 +220,21 @@ def contact_operator(
     N2 = tabulate(second.shape, second.order, pairing.xi2)[0]
     ψ = hats(first.shape, first.order, pairing.xi1)
     columns1, columns2 = place[first.facets[pairing.facet1]], second.facets[pairing.facet2]
-    shape, hat = _rows(columns1, N1, len(nodes)), _rows(columns1, ψ, len(nodes))
-    mass, mixed = mass_matrix(first, facets, nodes), _rows(columns2, N2, len(second.points))
+    trace, hat = _rows(columns1, N1, len(nodes)), _rows(columns1, ψ, len(nodes))
+    mass, mixed = SurfaceMass.of(first, facets, nodes), _rows(columns2, N2, len(second.points))
+    if jumps is None:
+        chosen = sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nodes)), (len(nodes), len(first.points)))
+        shape, frames = trace, frames[nodes]
+        jump1: sp.csr_matrix | MortarProjection = chosen
+        jump2 = _projection(pairing, first, second, nodes, mass, trace, mixed)
+    else:
+        own = _rows(first.facets[pairing.facet1], N1, len(first.points))
+        shape, frames = jumps.shape, jumps.frames
+        jump1, jump2 = jumps.projections(pairing.weight, (first, own), (second, mixed))
+        # cells of surface 1 are cut by those of the jump: only its mass at the points is consistent with forces there
+        mass = SurfaceMass((trace.T @ sp.diags(pairing.weight) @ trace + BEYOND * mass.matrix).tocsr())
     return ContactOperator(
-        nodes,
-        frames[nodes],
-        sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nodes)), (len(nodes), len(first.points))),
-        _projection(pairing, first, second, nodes, mass, shape, mixed),
-        mass,
-        shape,
-        hat,
+        nodes, frames, jump1, jump2, mass, trace, shape, hat,
         np.einsum("qk,qka->qa", N1, first.points[first.facets[pairing.facet1]]),
         pairing.weight,
         pairing.gap,
@@ -221,7 +247,7 @@ def _projection(
     first: Surface,
     second: Surface,
     nodes: Ints,
-    M: sp.csr_matrix,
+    mass: SurfaceMass,
     N1: sp.csr_matrix,
     N2: sp.csr_matrix,
 ) -> MortarProjection:
@@ -231,21 +257,9 @@ def _projection(
     covered = N1.T @ w @ N1
     nearest = cKDTree(second.points).query(first.points[nodes])[1]
     P = sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nearest)), (len(nodes), len(second.points)))
-    mixed = (N1.T @ w @ N2 + (M - covered) @ P).tocsr()
+    mixed = (N1.T @ w @ N2 + (mass.matrix - covered) @ P).tocsr()
     mixed.eliminate_zeros()
-    return MortarProjection(M, mixed)
-
-
-def mass_matrix(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
-    """Mass matrix ∫N_k N_l over some facets, (n, n) [mm²; mm in 2D], for the sorted nodes of these facets."""
-    xi, w = quadrature(surface.shape, 2 * surface.order + 2)
-    N, dN = tabulate(surface.shape, surface.order, xi)
-    tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets[facets]], dN)
-    area = np.sqrt(np.linalg.det(np.einsum("fqsa,fqta->fqst", tangents, tangents)))
-    values = np.einsum("fq,qi,qj->fij", w * area, N, N, optimize=True)
-    local = np.searchsorted(nodes, surface.facets[facets])
-    i, j = np.broadcast_arrays(local[:, :, None], local[:, None, :])
-    return sp.csr_matrix((values.ravel(), (i.ravel(), j.ravel())), (len(nodes), len(nodes)))
+    return MortarProjection(mass, mixed)
 
 
 def _rows(columns: Ints, values: Floats, count: int) -> sp.csr_matrix:
@@ -265,9 +279,11 @@ def stacked(operators: list[ContactOperator]) -> ContactOperator:
     def diagonal(name: str) -> sp.csr_matrix:
         return sp.block_diag([getattr(op, name) for op in operators], format="csr")
 
+    first = [op.jump1 for op in operators]
     return ContactOperator(
         np.concatenate([op.nodes for op in operators]), rows("frames"),
-        diagonal("jump1"), MortarProjection.stacked([op.jump2 for op in operators]), diagonal("mass"),
-        diagonal("shape"), diagonal("hat"),
+        MortarProjection.stacked(first) if isinstance(first[0], MortarProjection) else diagonal("jump1"),
+        MortarProjection.stacked([op.jump2 for op in operators]), SurfaceMass.stacked([op.mass for op in operators]),
+        diagonal("trace"), diagonal("shape"), diagonal("hat"),
         rows("points"), rows("weights"), rows("gap"), rows("stabiliser"),
     )

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 
+from evolvent.contact.nitsche.surface_mass import SurfaceMass
 from evolvent_meshes.arrays import Floats, Ints
 
 MANY = 0.25
@@ -28,11 +28,11 @@ ROUNDING = 1e-15
 class MortarProjection:
     """Mortar projection Π (n, n2).
 
-    mass: M (n, n) [mm²; mm in 2D].
+    mass: M, shared by what is projected onto the same space.
     mixed: B (n, n2) [mm²; mm in 2D].
     """
 
-    mass: sp.csr_matrix
+    mass: SurfaceMass
     mixed: sp.csr_matrix
 
     @property
@@ -50,21 +50,16 @@ class MortarProjection:
         """Projected values Π values, (n, ...) from (n2, ...)."""
         columns = np.asarray(values, dtype=float).reshape(len(values), -1)
         if columns.shape[1] < MANY * self.mixed.shape[1]:
-            return self.solved(_times(self.mixed, values))
+            return self.mass.solved(_times(self.mixed, values))
         return np.asarray(self._dense @ columns).reshape(-1, *values.shape[1:])
 
     def transposed(self, values: Floats) -> Floats:
         """Transposed projection Πᵀ values, (n2, ...) from (n, ...)."""
-        return _times(self._mixed_transposed, self.solved(values))
-
-    def solved(self, values: Floats) -> Floats:
-        """Solution M⁻¹ values, (n, ...)."""
-        flat = np.asarray(values, dtype=float).reshape(len(values), -1)
-        return np.asarray(self._factor.solve(flat)).reshape(values.shape)
+        return _times(self._mixed_transposed, self.mass.solved(values))
 
     def at(self, columns: Ints) -> Floats:
         """Some columns of Π, (n, c)."""
-        return self.solved(self.mixed[:, columns].toarray())
+        return self.mass.solved(self.mixed[:, columns].toarray())
 
     def matrix(self) -> sp.csr_matrix:
         """Sparse matrix Π (n, n2), without entries that are rounding errors."""
@@ -80,25 +75,22 @@ class MortarProjection:
     @staticmethod
     def stacked(projections: Sequence[MortarProjection]) -> MortarProjection:
         """Several projections side by side, block-diagonal."""
-        mass, mixed = (sp.block_diag(each, format="csr") for each in zip(*((p.mass, p.mixed) for p in projections)))
-        return MortarProjection(mass, mixed)
+        mixed = sp.block_diag([each.mixed for each in projections], format="csr")
+        return MortarProjection(SurfaceMass.stacked([each.mass for each in projections]), mixed)
 
     @cached_property
     def _dense(self) -> Floats:
         """Dense matrix Π (n, n2)."""
-        return self.solved(self.mixed.toarray())
-
-    @cached_property
-    def _factor(self) -> spla.SuperLU:
-        return spla.splu(self.mass.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        return self.mass.solved(self.mixed.toarray())
 
     @cached_property
     def _mixed_transposed(self) -> sp.csr_matrix:
         return self.mixed.T.tocsr()
 
     def __getstate__(self) -> dict[str, Any]:
-        """State without the factor, which cannot be sent between ranks."""
+        """State without what is computed from it."""
         return {"mass": self.mass, "mixed": self.mixed}
+
 
 
 def _times(matrix: sp.csr_matrix, values: Floats) -> Floats:

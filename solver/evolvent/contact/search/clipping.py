@@ -22,11 +22,11 @@ def clip(polygons: Floats, count: Ints, windows: Floats) -> tuple[Floats, Ints]:
         start, end = windows[:, side, None], windows[:, (side + 1) % windows.shape[1], None]
         along, rest = end - start, polygons[..., :2] - start
         distance = along[..., 0] * rest[..., 1] - along[..., 1] * rest[..., 0]
-        polygons, count = _cut(polygons, count, distance)
+        polygons, count = cut(polygons, count, distance)
     return polygons, count
 
 
-def _cut(polygons: Floats, count: Ints, distance: Floats) -> tuple[Floats, Ints]:
+def cut(polygons: Floats, count: Ints, distance: Floats) -> tuple[Floats, Ints]:
     """Keep the part of the polygons (p, v, c) with distance (p, v) >= 0."""
     index = np.arange(polygons.shape[1])
     used = index < count[:, None]

@@ -62,6 +62,13 @@ class Pairing:
     gap: Floats
     lost: float
 
+    def of(self, chosen: Bools) -> Pairing:
+        """Some of the pairs (q,) bool."""
+        return Pairing(
+            self.facet1[chosen], self.xi1[chosen], self.facet2[chosen], self.xi2[chosen], self.weight[chosen],
+            self.gap[chosen], self.lost,
+        )
+
 
 def pair_surfaces(surface1: Surface, surface2: Surface, max_gap: float, max_overlap: float,
                   facets1: ArrayLike | None = None, degree: int = 4) -> Pairing:

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evolvent.contact.nitsche.contact_operator import ContactOperator, contact_operator, mass_matrix
+from evolvent.contact.nitsche.contact_operator import ContactOperator, contact_operator
+from evolvent.contact.nitsche.surface_mass import SurfaceMass
 from evolvent.contact.problem.definition import Contact
 from evolvent.contact.search.pairing import Pairing, SearchError, pair_surfaces
 from evolvent.fem.body import Body
@@ -106,7 +107,7 @@ def pair_contact(
     facets, xi = pairing.facet1, pairing.xi1[:, None]
     as_placed = replace(
         operator,
-        mass=mass_matrix(placed[0], np.unique(facets), operator.nodes),
+        mass=SurfaceMass.of(placed[0], np.unique(facets), operator.nodes),
         points=placed[0].positions(facets, xi)[:, 0],
         weights=pairing.weight * _area_ratio(searched[0], placed[0], pairing),
         gap=np.einsum("qa,qa->q", normals, distance_vectors(placed, pairing)),

@@ -184,10 +184,10 @@ class StepSystem:
         previous: the deformed surfaces from which the slip is measured; None: as placed. operators: see `system`.
         Raises NotConverged.
         """
-        system = self.system(operators)
-        μ, slip = self.friction, self.slip(previous)
+        system, μ, slip = self.system(operators), self.friction, self.slip(previous)
+        at_points = system.operator.shape @ slip
         try:
-            state = self._frictional(system, μ, slip) if μ.any() else frictionless(normal_part(system))
+            state = self._frictional(system, μ, at_points) if μ.any() else frictionless(normal_part(system))
         except FreeMotion as failure:
             which = free_motion(self.problem.bodies, self.motions, normal_part(system).motion)
             raise FreeMotion(f"{failure}; {which}" if which else str(failure)) from failure

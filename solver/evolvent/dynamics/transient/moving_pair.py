@@ -163,7 +163,7 @@ class MovingPair:
         """Jumps Φ (n·k, m) by unit modes at the contact of a position [mm]."""
         moving = [member for member in Member if self.gears[member].count]
         if not moving:
-            return np.zeros((len(geometry.node) * k, 0))
+            return np.zeros((geometry.operator.n * k, 0))
         return np.hstack([self._jumps(geometry, member, k) for member in moving])
 
     def _jumps(self, geometry: ContactGeometry, member: Member, k: int) -> Floats:

@@ -17,7 +17,6 @@ from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
 from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.condensed_gear import GearBody
-from evolvent.gears.contact.search_window import arc_distance
 from evolvent.gears.contact.tooth_contact import ToothContact
 from evolvent.gears.kinematics import PairRotation, spin
 from evolvent.gears.ring.jump_map import JumpMap
@@ -65,8 +64,18 @@ class ContactGeometry:
 
     @cached_property
     def tooth(self) -> Ints:
-        """Tooth pair (n,) of each node."""
-        return np.concatenate([np.full(len(t.operator.nodes), t.tooth) for t in self.teeth])
+        """Tooth pair (n,) of each node of the jump."""
+        return np.concatenate([np.full(t.operator.n, t.tooth) for t in self.teeth])
+
+    @cached_property
+    def z(self) -> Floats:
+        """Heights (n,) of the jump's nodes [mm]."""
+        return np.concatenate([t.z for t in self.teeth])
+
+    @cached_property
+    def arc(self) -> Floats:
+        """Profile arc (n,) of the jump's nodes on the pinion's flank, from the base circle on [mm]."""
+        return np.concatenate([t.arc for t in self.teeth])
 
     @cached_property
     def point_tooth(self) -> Ints:
@@ -75,13 +84,18 @@ class ContactGeometry:
 
     @cached_property
     def node(self) -> Ints:
-        """Flank node (n,) of the pinion's tooth."""
+        """Flank nodes (m,) of the pinion's teeth about the points."""
         return np.concatenate([t.operator.nodes for t in self.teeth])
+
+    @cached_property
+    def node_tooth(self) -> Ints:
+        """Tooth pair (m,) of each of these."""
+        return np.concatenate([np.full(len(t.operator.nodes), t.tooth) for t in self.teeth])
 
     @cached_property
     def roll_distance(self) -> Floats:
         """Roll distance ξ (n,) of the contact line in each node's slice [mm]."""
-        return self.stand.pair.roll_distance(self.stand.angle, self.tooth, self.bodies[Member.PINION].z[self.node])
+        return self.stand.pair.roll_distance(self.stand.angle, self.tooth, self.z)
 
     @cached_property
     def points(self) -> tuple[Floats, Floats]:
@@ -111,45 +125,32 @@ class ContactGeometry:
 
     @cached_property
     def at_tip_edge(self) -> Bools:
-        """Points (q,) bool in the last row of facets before a tip edge of either gear. Where these carry load the flank
-        ends in a corner and the pressure is singular, a matter of the mesh."""
-        pinion, wheel = self.bodies
-        parts = []
-        for t in self.teeth:
-            first = t.operator.shape @ pinion.tip_zone[t.operator.nodes].astype(float)
-            opposite = t.operator.jump2.columns
-            tip = opposite[wheel.tip_zone[opposite]]
-            second = np.abs(t.operator.shape) @ np.abs(t.operator.jump2.at(tip)).sum(axis=1)
-            parts.append((np.abs(first) > 1e-9) | (second > 0.05))
-        return np.concatenate(parts)
+        """Points (q,) bool whose jump depends on the last row before a tip edge of either gear. Where these carry load
+        the flank ends in a corner and the pressure is singular, a matter of the mesh."""
+        return np.concatenate([t.at_tip_edge for t in self.teeth])
 
     @cached_property
     def across(self) -> Floats:
         """Signed distance (q,) [mm of profile arc] of the points from the nominal contact line, which is the flank's
         generator and perpendicular to the profile; positive towards the pinion's tip."""
-        pinion = self.bodies[Member.PINION]
+        base = self.bodies[Member.PINION].gear.base_radius
         ρ_line = self.stand.pair.pitch_point_roll_lengths[Member.PINION] + self.roll_distance
-        arc = (pinion.roll_length[self.node] ** 2 - ρ_line**2) / (2.0 * pinion.gear.base_radius)
-        return np.asarray(self.operator.shape @ arc)
+        return np.asarray(self.operator.shape @ (self.arc - ρ_line**2 / (2.0 * base)))
 
     @cached_property
     def opposite(self) -> Floats:
         """Signed distance (q,) [mm of profile arc] of the points' partners on the wheel's flank from the nominal
         contact line; positive towards the wheel's tip."""
-        gear, base = Member.WHEEL, self.bodies[Member.WHEEL].gear.base_radius
-        ρ_line = self.stand.pair.pitch_point_roll_lengths[gear] - self.roll_distance
-        axis = self.stand.tilt(gear)[: self.d, : self.d]
-        r = np.linalg.norm(((self.points[gear] - self.stand.centre(gear, self.d)) @ axis)[:, :2], axis=1)
-        return np.asarray(self.operator.shape @ ((r**2 - base**2 - ρ_line**2) / (2.0 * base)))
+        wheel, base = self.bodies[Member.WHEEL].flank, self.bodies[Member.WHEEL].gear.base_radius
+        pairs = [t.pairing for t in self.teeth]
+        x = np.concatenate([wheel.positions(p.facet2, p.xi2[:, None])[:, 0] for p in pairs])
+        ρ_line = self.stand.pair.pitch_point_roll_lengths[Member.WHEEL] - self.operator.shape @ self.roll_distance
+        return np.asarray((x[:, 0] ** 2 + x[:, 1] ** 2 - base**2 - ρ_line**2) / (2.0 * base))
 
     @cached_property
     def window_distance(self) -> Floats:
-        """Distance (q,) of the points from their contact lines, in half-widths of the window."""
-        parts = [
-            arc_distance(self.bodies[Member.PINION], self.stand, t.tooth, t.operator.nodes) / self.half_width
-            for t in self.teeth
-        ]
-        return np.asarray(self.operator.hat @ np.concatenate(parts))
+        """Distance (q,) of the points from the lines about which they were searched, in half-widths of the window."""
+        return np.concatenate([t.distance for t in self.teeth]) / self.half_width
 
     def reaches_rim(self, pressed: Bools) -> bool:
         """Whether a point in contact (q,) bool lies at the window's rim, where the pressure may have been cut off."""
@@ -169,8 +170,7 @@ class ContactGeometry:
         result = []
         for t in self.teeth:
             axes = ((t.operator.frames @ R) * gear.sign)[:, :k]
-            # the pinion's flank has a node where the jump has one
-            result.append(JumpMap(None if gear == Member.PINION else t.projection, axes))
+            result.append(JumpMap(t.projections[gear], axes))
         return result
 
     def flank_forces(self, gear: Member, contact_forces: Floats) -> Floats:
@@ -200,7 +200,7 @@ class ContactGeometry:
 
     def _split(self, values: Floats) -> list[Floats]:
         """Values (n, …) of the nodes by tooth pair."""
-        return np.split(values, np.cumsum([len(t.operator.nodes) for t in self.teeth])[:-1])
+        return np.split(values, np.cumsum([t.operator.n for t in self.teeth])[:-1])
 
 
 def relative_velocity(geometry: ContactGeometry) -> Floats:

@@ -10,7 +10,6 @@ import numpy as np
 from evolvent.gears.contact.contact_geometry import ContactGeometry, relative_velocity
 from evolvent.gears.kinematics import line_of_action
 from evolvent_meshes.arrays import Bools, Floats, Ints
-from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,7 @@ def contact_points(
     size = np.linalg.norm(t[:, 1:], axis=1)
     return ContactPoints(
         tooth=geometry.point_tooth[pressed],
-        z=shape @ geometry.bodies[Member.PINION].z[geometry.node],
+        z=shape @ geometry.z,
         roll_distance=shape @ geometry.roll_distance,
         across=geometry.across[pressed],
         opposite=geometry.opposite[pressed],

@@ -7,7 +7,6 @@ all the same.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -15,22 +14,23 @@ from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.surface import Surface
 from evolvent.gears.contact.contact_geometry import ContactGeometry
+from evolvent.gears.contact.contact_line import ContactLine
+from evolvent.gears.contact.lattice_pairing import with_wheel_edges
+from evolvent.gears.contact.moved_contact import farthest_moved
 from evolvent.gears.contact.pair_contact import GearContact
+from evolvent.gears.contact.pressure_normals import pressure_normals
 from evolvent.gears.contact.search_window import facets_in_window, placed_flanks
 from evolvent.gears.contact.tooth_contact import PENETRATION
-from evolvent.gears.kinematics import spin
+from evolvent.gears.contact.unsearched_points import unsearched_pairs
+from evolvent.gears.kinematics import PairRotation, spin
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.gears.pair import GearPair
 
 NEARLY = 5e-3  # modules: flanks so far apart may overlap once the gears have turned on, see worn_position.STALE
 
 WITHIN_WINDOW = 0.5
 """Distance by which modifications may move the contact, over the half-width of the window; the rest is its own width.
 """
-PLACES = 200
-"""Places along the profile at which slopes of modifications are looked at."""
-
 FlankPoints = tuple[Surface, Ints, Floats]
 """Points of a flank: its surface, the facets (q,), the reference coordinates (q, d−1)."""
 
@@ -43,12 +43,14 @@ class UnsearchedOverlap:
     pinion: the pinion's flank in place.
     wheel: the wheel's flank in place.
     pairs: the q pairs of points.
+    stand: where the gears stand.
     """
 
     tooth: int
     pinion: Surface
     wheel: Surface
     pairs: Pairing
+    stand: PairRotation
 
     @property
     def sides(self) -> tuple[FlankPoints, FlankPoints]:
@@ -56,11 +58,14 @@ class UnsearchedOverlap:
         pairs = self.pairs
         return (self.pinion, pairs.facet1, pairs.xi1), (self.wheel, pairs.facet2, pairs.xi2)
 
-    @property
-    def normals(self) -> Floats:
-        """Unit normals (q, d) along which the gaps were measured."""
-        n = self.pinion.evaluate(self.pinion.normals, self.pairs.facet1, self.pairs.xi1[:, None])[0][:, 0]
-        return np.asarray(n / np.linalg.norm(n, axis=1, keepdims=True))
+    def along_pressure(self) -> tuple[Floats, Floats]:
+        """Unit normals (q, d) along which a pressure would act, and their cosines (q,) with the pinion's, along which
+        the gaps were measured. Along others flanks that slide on each other would seem to overlap."""
+        first, second = (_unit_normals(*side) for side in self.sides)
+        x = self.pinion.positions(self.pairs.facet1, self.pairs.xi1[:, None])[:, 0]
+        ξ = self.stand.roll_distance(self.tooth, x[:, 2] if x.shape[1] == 3 else np.zeros(len(x)))
+        normals = pressure_normals(first, second, self.stand.pair, ξ)
+        return normals, np.einsum("qa,qa->q", normals, first)
 
 
 def unsearched_overlaps(geometry: ContactGeometry, teeth: tuple[int, ...]) -> tuple[UnsearchedOverlap, ...]:
@@ -71,13 +76,12 @@ def unsearched_overlaps(geometry: ContactGeometry, teeth: tuple[int, ...]) -> tu
     is off the path of contact: on it conjugate flanks are closest in the window, unless modifications are so steep that
     they move the contact out of it. Raises SearchError.
     """
-    overlaps, module = [], geometry.bodies[Member.PINION].gear.normal_module
+    overlaps = []
     for tooth in teeth:
-        facets = _unsearched_facets(geometry, tooth)
-        if len(facets):
-            pinion, wheel = placed_flanks(geometry.bodies, geometry.stand, tooth)
-            pairs = pair_surfaces(pinion, wheel, NEARLY * module, PENETRATION * module, facets)
-            overlaps += [UnsearchedOverlap(tooth, pinion, wheel, pairs)] if len(pairs.gap) else []
+        flanks = placed_flanks(geometry.bodies, geometry.stand, tooth)
+        pairs = _unsearched_pairs(geometry, tooth, flanks)
+        if pairs is not None and len(pairs.gap):
+            overlaps.append(UnsearchedOverlap(tooth, *flanks, pairs, geometry.stand))
     return tuple(overlaps)
 
 
@@ -100,7 +104,14 @@ def _overlap(
         u + _rotated(contact.geometry, gear, rotation[gear], side) for gear, u, side in zip(Member, moved, place.sides)
     )
     gap = place.pairs.gap + sum(body.lost(*side[1:]) for body, side in zip(contact.bodies, place.sides))
-    return float(np.max(np.einsum("qa,qa->q", place.normals, u1 - u2) - gap, initial=0.0))
+    normals, shorter = place.along_pressure()
+    return float(np.max(np.einsum("qa,qa->q", normals, u1 - u2) - shorter * gap, initial=0.0))
+
+
+def _unit_normals(surface: Surface, facets: Ints, xi: Floats) -> Floats:
+    """Unit normals (q, d) at points of a flank."""
+    n = surface.evaluate(surface.normals, facets, xi[:, None])[0][:, 0]
+    return np.asarray(n / np.linalg.norm(n, axis=1, keepdims=True))
 
 
 def _rotated(geometry: ContactGeometry, gear: Member, angle: float, points: FlankPoints) -> Floats:
@@ -110,14 +121,29 @@ def _rotated(geometry: ContactGeometry, gear: Member, angle: float, points: Flan
     return angle * spin(x, geometry.stand.centre(gear, geometry.d), geometry.stand.axis(gear))
 
 
-def _unsearched_facets(geometry: ContactGeometry, tooth: int) -> Ints:
-    """The pinion's facets that the window leaves out: in slices off the path of contact, and as far beside the window
-    as steep modifications may move the contact."""
+def _unsearched_pairs(
+    geometry: ContactGeometry, tooth: int, flanks: tuple[Surface, Surface]
+) -> Pairing | None:
+    """Points that the window leaves out with partners near them: in slices off the path of contact, and as far beside
+    the window as steep modifications may move the contact. None where the window leaves nothing out."""
+    pinion, wheel = geometry.bodies
+    reach, depth = NEARLY * pinion.gear.normal_module, PENETRATION * pinion.gear.normal_module
+    moved = farthest_moved(geometry.stand.pair)
+    moved = moved if moved > WITHIN_WINDOW * geometry.half_width else 0.0
+    if pinion.levels:
+        line = with_wheel_edges(ContactLine((pinion.cells, wheel.cells), geometry.stand, tooth), flanks)
+        return unsearched_pairs(line, geometry.half_width, moved, flanks, reach, depth)
+    facets = _unsearched_facets(geometry, tooth, moved)
+    return pair_surfaces(*flanks, reach, depth, facets) if len(facets) else None
+
+
+def _unsearched_facets(geometry: ContactGeometry, tooth: int, moved: float) -> Ints:
+    """The pinion's facets that the window leaves out. moved: how far beside it [mm] they are looked at."""
     pinion, stand = geometry.bodies[Member.PINION], geometry.stand
     start, end = stand.pair.path_of_contact
     ξ = stand.roll_distance(tooth, pinion.z)
     off = ((ξ < start) | (ξ > end))[pinion.flank.facets].any(axis=1)
-    if (moved := farthest_moved(stand.pair)) > WITHIN_WINDOW * geometry.half_width:
+    if moved:
         off |= facets_in_window(pinion, stand, tooth, geometry.half_width + moved)
     return np.flatnonzero(off & ~facets_in_window(pinion, stand, tooth, geometry.half_width))
 
@@ -137,16 +163,3 @@ def _deflections(
         N = tabulate(surface.shape, surface.order, xi)[0]
         result.append(np.einsum("qk,qka->qa", N, part[index.reshape(N.shape)]))
     return result
-
-
-@lru_cache(maxsize=16)
-def farthest_moved(pair: GearPair) -> float:
-    """Largest distance [mm of profile arc] by which flank modifications move the contact from the line of flanks
-    without: the slope of a modification along the profile times the relative radius of curvature."""
-    ξ = np.linspace(*pair.path_of_contact, PLACES)
-    radius, moved = pair.relative_curvature_radius(ξ), 0.0
-    for member, gear, pitch_point in zip(Member, pair.gears, pair.pitch_point_roll_lengths):
-        roll, half = pitch_point + member.sign * ξ, 0.5 * gear.face_width
-        slopes = gear.flank_depth.slopes(roll[:, None], np.array([[-half, 0.0, half]]))[0]
-        moved += float(np.max(np.abs(slopes) * (radius * gear.base_radius / roll)[:, None]))
-    return moved

@@ -82,7 +82,7 @@ class GearContact:
         """Condensed system with a known compliance and one free rotation: of the `loaded` gear, under `torque` [N·mm;
         per mm of width in 2D]."""
         k = compliance.k
-        n = len(self.geometry.node) * k
+        n = self.operator.n * k
         motion = self.geometry.spins[loaded][:, :k].reshape(n, 1)
         lever = np.array([self.bodies[loaded].gear.base_radius])
         load = np.array([torque])

@@ -12,22 +12,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from evolvent.contact.nitsche.contact_operator import ContactOperator
-from evolvent.fem.surface import Surface
-from evolvent.gears.condensed_gear import GearBody
-from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.pair import GearPair
 
 
-def pressure_normals(
-    operator: ContactOperator, pinion: GearBody, wheel_flank: Surface, stand: PairRotation, tooth: int
-) -> Floats:
+def pressure_normals(first: Floats, second: Floats, pair: GearPair, ξ: Floats) -> Floats:
     """Unit normals (n, d) at the nodes of a tooth pair's contact.
 
-    operator: with the pinion's normals in its frames. wheel_flank: in the common frame.
+    first, second: normals (n, d) of the pinion's flank and of the wheel's opposite. ξ: (n,) roll distances of the
+    contact line in the nodes' slices [mm].
     """
-    start, end = stand.pair.path_of_contact
-    ξ = stand.roll_distance(tooth, pinion.z[operator.nodes])
+    start, end = pair.path_of_contact
     share = np.clip((ξ - start) / (end - start), 0.0, 1.0)[:, None]
-    mixed = (1.0 - share) * operator.frames[:, 0] - share * (operator.jump2 @ wheel_flank.normals)
+    mixed = (1.0 - share) * first - share * second
     return np.asarray(mixed / np.linalg.norm(mixed, axis=1, keepdims=True))

@@ -33,7 +33,3 @@ class JumpMap:
         """Forces (m, d) on the gear's nodes under contact forces (n, k), but for the sign: the transposed map."""
         nodal = np.einsum("jka,jk->ja", self.axes, contact_forces)
         return nodal if self.projection is None else self.projection.transposed(nodal)
-
-    def opposite(self, points: Floats) -> Floats:
-        """Positions (n, d) of the jump's nodes on the gear's flank, from its nodes there (m, d) [mm]."""
-        return points if self.projection is None else self.projection @ points

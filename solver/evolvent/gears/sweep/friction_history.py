@@ -104,11 +104,12 @@ def previous_friction(geometry: ContactGeometry, history: FrictionHistory) -> Fl
     """Previous contact forces (n, d−1) on the nodes of the present contact [N; per mm of width in 2D], in the present
     tangent planes: where the normals have turned, they contain some of the normal forces, too. Forces on nodes that the
     present contact does not have are left out."""
-    rows = geometry.rows(Member.PINION)[0]
+    rows, parts = geometry.rows(Member.PINION)
     forces = np.zeros((len(rows), geometry.d))
     then, now = _shared_rows(history, rows)
     forces[now] = history.forces[Member.PINION][then]
-    turned = forces @ geometry.stand.rotation(Member.PINION, geometry.d).T
+    gathered = np.concatenate([t.operator.gathered(forces[part]) for t, part in zip(geometry.teeth, parts)])
+    turned = gathered @ geometry.stand.rotation(Member.PINION, geometry.d).T
     local: Floats = -np.einsum("jia,ja->ji", geometry.operator.frames, turned)  # −f acts on the pinion
     return local[:, 1:]
 
@@ -132,8 +133,9 @@ def _jump(geometry: ContactGeometry, before: PairRotation, u1: Floats, u2: Float
     R1, R2 = (geometry.stand.rotation(gear, d) for gear in Member)
     if not geometry.is_deflected:
         R1 = R2 @ before.rotation(wheel, d).T @ before.rotation(pinion, d)
-    parts = zip(geometry.teeth, geometry.rows(pinion)[1], geometry.rows(wheel)[1])
-    w = [u1[first] @ R1.T - t.projection @ u2[second] @ R2.T for t, first, second in parts]
+    w = []
+    for t, first, second in zip(geometry.teeth, geometry.rows(pinion)[1], geometry.rows(wheel)[1]):
+        w.append(t.projected(pinion, u1[first] @ R1.T) - t.projected(wheel, u2[second] @ R2.T))
     return np.einsum("jia,ja->ji", geometry.operator.frames, np.concatenate(w))
 
 

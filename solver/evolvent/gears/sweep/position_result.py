@@ -115,7 +115,7 @@ def position_result(
         friction=friction,
         torques=(torques[0], torques[1]),
         contact=contact_points(geometry, equilibrium.traction, friction, stand.beyond_nominal),
-        tooth=geometry.tooth,
+        tooth=geometry.node_tooth,
         node=geometry.node,
         weights=weights,
         traction=traction,

@@ -217,9 +217,10 @@ def _on_same_nodes(
     last: tuple[ContactGeometry, InitialGuess] | None, geometry: ContactGeometry
 ) -> InitialGuess | None:
     """Equilibrium of the last search of a position, as seen from this one, where its nodes are the same."""
-    if last is None or not np.array_equal(last[0].node, geometry.node):
+    if last is None:
         return None
-    return last[1] if np.array_equal(last[0].tooth, geometry.tooth) else None
+    same = all(np.array_equal(getattr(last[0], name), getattr(geometry, name)) for name in ("tooth", "z", "arc"))
+    return last[1] if same else None
 
 
 def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float]) -> SharedPosition:
@@ -270,7 +271,7 @@ def _initially_pressed(
     contact patch. Without either, or where it has none of them, those near the contact lines."""
     pressed = None if before is None else before.at(geometry)
     if guess is not None:
-        z = geometry.operator.shape @ geometry.bodies[Member.PINION].z[geometry.node]
+        z = geometry.operator.shape @ geometry.z
         pressed = guess.pressed(geometry.point_tooth, z, geometry.across)
     if pressed is not None and pressed.any():
         return pressed

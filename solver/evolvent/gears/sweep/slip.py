@@ -19,12 +19,14 @@ NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not tak
 
 
 def slip_increment(geometry: ContactGeometry, before: PreviousJump, span: float) -> Floats:
-    """Slip (n, d−1) [mm] since the previous position, Δφ = span [rad] before, without the part of the present elastic
-    displacements: nominal slip, change of the free rotations, and minus the elastic jump of then."""
-    pair, rate = geometry.stand.pair, relative_velocity(geometry)
-    ξ, ξ_before = geometry.roll_distance, geometry.roll_distance - pair.pinion.base_radius * span
-    slip = nominal_slip(rate[:, 1:], ξ, ξ_before, slip_growth_direction(geometry), pair.ratio, span)
-    return slip + _beyond_nominal(geometry, before)
+    """Slip (q, d−1) [mm] at the points since the previous position, Δφ = span [rad] before, without the part of the
+    present elastic displacements: nominal slip, change of the free rotations, and minus the elastic jump of then. The
+    nominal slip jumps at the pitch point, so that it is not interpolated."""
+    pair, shape = geometry.stand.pair, geometry.operator.shape
+    rate, along = shape @ relative_velocity(geometry)[:, 1:], shape @ slip_growth_direction(geometry)
+    ξ = shape @ geometry.roll_distance
+    slip = nominal_slip(rate, ξ, ξ - pair.pinion.base_radius * span, along, pair.ratio, span)
+    return slip + shape @ _beyond_nominal(geometry, before)
 
 
 def work_beyond_nominal(
@@ -38,7 +40,7 @@ def work_beyond_nominal(
     history, interpolated to the contact and as it was.
     """
     geometry, operator = contact.geometry, contact.operator
-    flux = np.einsum("jia,ja->ji", operator.frames, operator.flux(found.traction))
+    flux = np.einsum("jia,ja->ji", operator.frames, operator.projected(operator.flux(found.traction)))
     slip = (found.jump + flux)[:, 1:] + _beyond_nominal(geometry, before)
     return 0.5 * float(np.sum((found.force[:, 1:] + previous_friction(geometry, history)) * slip))
 

@@ -41,10 +41,9 @@ class NormalStrips:
             changes.append(change.reshape(q * p, Q * P).astype(np.float32))
         return NormalStrips(correction, tuple(changes))
 
-    def among(self, loaded: LoadedStrips, apart: float) -> NormalTiles:
-        """Normal correction [mm/N] between the nodes (k,) of `loaded`, no more than so many coarse layers apart along
-        the face."""
-        order, limit = np.argsort(loaded.place), int(apart * self.correction.per_layer)
+    def among(self, loaded: LoadedStrips) -> NormalTiles:
+        """Normal correction [mm/N] between the nodes (k,) of `loaded`."""
+        order, limit = np.argsort(loaded.place), self._reach
         place, number = loaded.place[order], np.full(len(order) + 1, -1, dtype=np.int32)
         number[order] = np.arange(len(order), dtype=np.int32)
         starts, first, ends = self._tiles(place, limit)
@@ -88,6 +87,15 @@ class NormalStrips:
             of_all = sources[:, :, None], moved[:, None], change[np.ix_(used, near)][None]
             rows, columns, values = (np.broadcast_to(each, both.shape)[both] for each in of_all)
             yield rows, columns, values
+
+    @cached_property
+    def _reach(self) -> int:
+        """Levels of nodes over which the correction couples."""
+        rises = [
+            np.abs(_levels(s.source, s.sources)[:, None] - _levels(s.start, s.moved)).max()
+            for s in self.correction.strips
+        ]
+        return int(max(rises))
 
     @cached_property
     def _change(self) -> dict[int, Singles]:

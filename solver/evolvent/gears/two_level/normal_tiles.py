@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from evolvent_meshes.arrays import Ints, Singles
 
@@ -25,15 +26,26 @@ class NormalTiles:
     first: Ints
     tiles: tuple[Singles, ...]
 
-    def part(self, rows: tuple[int, int], columns: tuple[int, int]) -> Singles:
-        """Rows and columns from the first to before the last of each pair, zero where no tile is."""
-        (low, high), (left, right) = rows, columns
-        result = np.zeros((high - low, right - left), dtype=np.float32)
-        for t in range(np.searchsorted(self.starts, low, side="right") - 1, np.searchsorted(self.starts, high)):
-            start, first, tile = self.starts[t], self.first[t], self.tiles[t]
-            i, top = max(low, start), min(high, start + len(tile))
-            j, end = max(left, first), min(right, first + tile.shape[1])
-            if j < end:
-                inner = tile[i - start : top - start, j - first : end - first]
-                result[i - low : top - low, j - left : end - left] = inner
-        return result
+    def add_sandwiched(self, total: Singles, N: sp.csr_matrix, start: int) -> None:
+        """Adds N S Nᵀ to a matrix (n, n). N: (n, m) at m of the nodes, from the one with index `start` on."""
+        number = self.number[start : start + N.shape[1]]
+        first = int(number.min())
+        order = np.empty(N.shape[1], dtype=np.int64)
+        order[number - first] = np.arange(N.shape[1])
+        columns = N[:, order].tocsc()
+        dense, rows = np.ascontiguousarray(columns.T.toarray()), _rows_of_columns(columns)
+        ends = np.searchsorted(self.starts, [first, first + N.shape[1]])
+        for t in range(*ends):
+            here = slice(self.starts[t] - first, self.starts[t + 1] - first)
+            near = slice(self.first[t] - first, self.first[t] - first + self.tiles[t].shape[1])
+            i, j = _span(rows, here), _span(rows, near)
+            total[i, j] += (dense[here, i].T @ self.tiles[t]) @ dense[near, j]
+
+
+def _rows_of_columns(N: sp.csc_matrix) -> tuple[Ints, Ints]:
+    """First and last + 1 row of the entries of each column; all of them have some."""
+    return np.minimum.reduceat(N.indices, N.indptr[:-1]), np.maximum.reduceat(N.indices, N.indptr[:-1]) + 1
+
+
+def _span(rows: tuple[Ints, Ints], columns: slice) -> slice:
+    return slice(int(rows[0][columns].min()), int(rows[1][columns].max()))

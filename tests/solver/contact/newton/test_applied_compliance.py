@@ -57,7 +57,7 @@ class Surface:
     def nearly(self) -> NearlyNormal:
         """The normal components of each contact, without what couples them to others."""
         place = np.arange(HALF)
-        block = sp.csr_matrix((0.5 / (1.0 + np.abs(place[:, None] - place))).astype(np.float32))
+        block = (0.5 / (1.0 + np.abs(place[:, None] - place))).astype(np.float32)
         modes, coupling = smooth(self.k)
         return NearlyNormal((block, block), modes, 0.5 * coupling)
 

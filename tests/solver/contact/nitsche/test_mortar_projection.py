@@ -9,6 +9,7 @@ import pytest
 import scipy.sparse as sp
 
 from evolvent.contact.nitsche.mortar_projection import MortarProjection
+from evolvent.contact.nitsche.surface_mass import SurfaceMass
 from evolvent_meshes.arrays import Floats
 
 N, N2 = 7, 12
@@ -20,11 +21,11 @@ def projection(seed: int = 1) -> MortarProjection:
     L = np.tril(random.random((N, N))) + N * np.eye(N)
     mixed = random.random((N, N2)) * (random.random((N, N2)) < 0.5)
     mixed[:, N2 - 5 :] = 0.0
-    return MortarProjection(sp.csr_matrix(L @ L.T), sp.csr_matrix(mixed))
+    return MortarProjection(SurfaceMass(sp.csr_matrix(L @ L.T)), sp.csr_matrix(mixed))
 
 
 def written_out(Π: MortarProjection) -> Floats:
-    return np.linalg.solve(Π.mass.toarray(), Π.mixed.toarray())
+    return np.linalg.solve(Π.mass.matrix.toarray(), Π.mixed.toarray())
 
 
 @pytest.mark.parametrize("shape", [(), (3,), (3, 2)])

@@ -11,7 +11,8 @@ import pytest
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.contact import overlap_check, pair_contact, tooth_contact
-from evolvent.gears.contact.overlap_check import farthest_moved, overlap_outside, unsearched_overlaps
+from evolvent.gears.contact.moved_contact import farthest_moved
+from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation

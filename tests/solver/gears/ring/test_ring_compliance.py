@@ -7,6 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 from evolvent.contact.nitsche.mortar_projection import MortarProjection
+from evolvent.contact.nitsche.surface_mass import SurfaceMass
 from evolvent.fem.condensation.schur_complement import (
     Factor,
     SectorCondensation,
@@ -109,8 +110,8 @@ def test_displacements_under_forces_equal_the_merged_model(shape: str) -> None:
 
 def random_map(random: np.random.Generator, nodes: int, d: int) -> JumpMap:
     """Two components at each of two nodes from all displacements of a flank."""
-    projection = MortarProjection(sp.identity(2, format="csr"), sp.csr_matrix(random.normal(size=(2, nodes))))
-    return JumpMap(projection, random.normal(size=(2, 2, d)))
+    mass, mixed = SurfaceMass(sp.identity(2, format="csr")), sp.csr_matrix(random.normal(size=(2, nodes)))
+    return JumpMap(MortarProjection(mass, mixed), random.normal(size=(2, 2, d)))
 
 
 @pytest.mark.parametrize("shape", SHAPES)

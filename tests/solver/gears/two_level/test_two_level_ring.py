@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,6 +12,7 @@ import pytest
 import scipy.sparse as sp
 
 from evolvent.contact.nitsche.mortar_projection import MortarProjection
+from evolvent.contact.nitsche.surface_mass import SurfaceMass
 from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_compliance import MappedNodes
 from evolvent.gears.ring.ring_window import RingWindow
@@ -58,8 +59,9 @@ def level(random: np.random.Generator, layers: int, before: int) -> tuple[Refine
     return RefinedLevel(transfer, correction.strips, random.normal(size=(size, 3))), correction.matrix
 
 
-def two_levels() -> tuple[TwoLevelRing, Floats]:
-    """A ring with two levels of 28 and 36 nodes, and its compliance written out."""
+def two_levels(normal: Floats | None = None) -> tuple[TwoLevelRing, Floats]:
+    """A ring with two levels of 28 and 36 nodes, and its compliance written out. normal: (3,) of all nodes, None:
+    random ones."""
     random = np.random.default_rng(7)
     matrix = random.normal(size=(TEETH * COARSE * D,) * 2)
     first = level(random, 3, COARSE)
@@ -72,6 +74,9 @@ def two_levels() -> tuple[TwoLevelRing, Floats]:
         C = R @ C @ R.T + np.kron(np.eye(TEETH), change)
     Q = sp.block_diag([np.kron(np.eye(levels[-1].correction.size), turn(i * PITCH)) for i in range(TEETH)]).toarray()
     flank: Any = SimpleNamespace(points=random.normal(size=(COARSE, 3)), normals=random.normal(size=(COARSE, 3)))
+    if normal is not None:
+        flank.normals[:] = normal
+        levels = [replace(each, normals=np.tile(normal, (len(each.normals), 1))) for each in levels]
     coarse: Any = RandomRing(matrix)
     return TwoLevelRing(coarse, flank, tuple(levels), PITCH), Q @ C @ Q.T
 
@@ -92,8 +97,9 @@ def mapped(ring: TwoLevelRing) -> list[MappedNodes]:
     """Two components of the jump at four nodes of tooth 2, from nine nodes of its flank, and at two of tooth 0."""
     random = np.random.default_rng(2)
     mass, mixed = sp.csr_matrix(np.diag([1.0, 2.0, 1.5, 1.2])), sp.csr_matrix(random.random((4, 9)))
-    many = JumpMap(MortarProjection(mass, mixed), random.normal(size=(4, 2, D)))
-    few = JumpMap(None, random.normal(size=(2, 2, D)))
+    many = JumpMap(MortarProjection(SurfaceMass(mass), mixed), random.normal(size=(4, 2, D)))
+    equal = MortarProjection(SurfaceMass(sp.csr_matrix(2.0 * np.eye(2))), sp.csr_matrix(2.0 * np.eye(2)))
+    few = JumpMap(equal, random.normal(size=(2, 2, D)))
     return [MappedNodes(2, random.permutation(ring.size)[:9], many), MappedNodes(0, np.array([13, 2]), few)]
 
 
@@ -126,3 +132,18 @@ def test_modes_that_teeth_share() -> None:
     found = rough.modes * rough.couplings @ rough.modes.T
     assert found[:8, 8:] == pytest.approx(A[:8, 8:], abs=3e-3 * np.abs(A).max())
     assert [block.shape for block in rough.blocks] == [(4, 4), (2, 2)]
+
+
+def test_normal_components_of_a_tooth() -> None:
+    """Problem: one tooth, all of whose nodes have one normal, and jumps of a mortar projection along it. Exact: blocks
+    and modes are the compliance of the normal components, but for modes that are a thousandth of the largest."""
+    n = np.array([0.6, 0.0, 0.8])
+    ring, exact = two_levels(n)
+    random = np.random.default_rng(4)
+    projection = MortarProjection(
+        SurfaceMass(sp.csr_matrix(np.diag([1.0, 2.0, 1.5, 1.2]))), sp.csr_matrix(random.random((4, 9))))
+    part = MappedNodes(0, random.permutation(ring.size)[:9], JumpMap(projection, np.tile(n, (4, 1, 1))))
+    rough = ring.jumps([part]).nearly()
+    found = rough.blocks[0] + rough.modes * rough.couplings @ rough.modes.T
+    A = of_jumps(ring, exact, [part])
+    assert found == pytest.approx(A, abs=2e-3 * np.abs(A).max())

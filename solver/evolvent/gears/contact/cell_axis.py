@@ -1,0 +1,64 @@
+"""The middle line of contact cells and their width, of second order along each cell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.gears.contact.contact_line import ContactLine
+from evolvent_meshes.arrays import Floats, Ints
+
+LONG = 10.0
+"""Length of a cell over its width."""
+
+
+@dataclass(frozen=True)
+class CellAxis:
+    """A contact line between the limits of L cells. Profile arcs are of second order in height in each, as the shape
+    functions are: so displacements that are linear on the flank are represented exactly.
+
+    limits: (L + 1,) heights that limit the cells [mm].
+    arc: (2L + 1,) profile arc of the line on the pinion's flank at limits and middles [mm].
+    width: (2L + 1,) of the cells there [mm of profile arc].
+    """
+
+    limits: Floats
+    arc: Floats
+    width: Floats
+
+    @staticmethod
+    def of(line: ContactLine) -> CellAxis | None:
+        """The axis of cells as wide as the rows of the pinion's flank; None where the line has left the flanks."""
+        limits = line.cell_limits(LONG)
+        if not len(limits):
+            return None
+        z = _heights(limits)
+        return CellAxis(limits, line.arc(z), line.row_width(z))
+
+    @property
+    def heights(self) -> Floats:
+        """Heights (2L + 1,) of the levels of nodes [mm]."""
+        return _heights(self.limits)
+
+    def cell(self, z: Floats) -> Ints:
+        """The cells (q,) in which heights lie."""
+        return np.clip(np.searchsorted(self.limits, z, side="right") - 1, 0, len(self.limits) - 2)
+
+    def at(self, z: Floats) -> tuple[Floats, Floats]:
+        """Profile arc of the line and width of the cells at heights (q,) [mm]."""
+        cell = self.cell(z)
+        y = (z - self.limits[cell]) / np.diff(self.limits)[cell]
+        N, nodes = along(y), 2 * cell[:, None] + np.arange(3)
+        return np.einsum("qk,qk->q", N, self.arc[nodes]), np.einsum("qk,qk->q", N, self.width[nodes])
+
+
+def along(y: Floats) -> Floats:
+    """Shape functions (q, 3) of a second-order interval at coordinates (q,): of its start, its middle and its end."""
+    return np.stack([(1.0 - y) * (1.0 - 2.0 * y), 4.0 * y * (1.0 - y), y * (2.0 * y - 1.0)], axis=1)
+
+
+def _heights(limits: Floats) -> Floats:
+    result = np.empty(2 * len(limits) - 1)
+    result[::2], result[1::2] = limits, 0.5 * (limits[1:] + limits[:-1])
+    return result

@@ -101,8 +101,8 @@ def one_mesh_reason(scene: Scene) -> str:
         return "Flanks that wear have no levels of their own (two-level): each sector is one fine mesh."
     if has_long_cells(problem):
         return (
-            f"Flank cells over {LONGEST:g} times as long as high: each sector is one fine mesh, without levels of its "
-            "flank (two-level)."
+            f"Flank cells over {LONGEST:g} times as long as high before the last division: each sector is one fine "
+            "mesh, without levels of its flank (two-level)."
         )
     return ""
 

@@ -130,7 +130,7 @@ TETRAHEDRA, ELEMENTS = "mesh.shape=tetrahedron", "mesh.elements_per_contact_widt
             ["mesh.level=quick", "exact.parts=one-sector"], 8e3, "mesh.level",
             "take one-sector out of exact.parts (--exact)",
         ),
-        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 3.277 N·m on --level quick does"),
+        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 1.638 N·m on --level quick does"),
     ],
 )
 def test_remedy_names_the_finest_mesh_that_fits(
@@ -214,7 +214,7 @@ def test_commands_refuse_a_mesh_that_does_not_fit(
     arguments = [command, str(ROOT / "demos/yang2022.toml"), "--out", out]
     assert main(arguments) == 2
     said = capsys.readouterr().err
-    assert 'mesh.level: found "standard", 154,734 degrees of freedom and 105,270 of fine flanks' in said
+    assert 'mesh.level: found "standard", 179,826 degrees of freedom and 61,710 of fine flanks' in said
     assert "; remedy: " in said
     assert list(tmp_path.iterdir()) == []
 
@@ -247,13 +247,13 @@ def test_check_reports_a_mesh_that_does_not_fit(machine: Callable[[float], None]
 
 
 def test_check_reports_both_meshes_of_a_flank_in_levels() -> None:
-    """Coarse sectors, and the elements and degrees of freedom of the fine flanks: 60 x 72 of second order."""
+    """Coarse sectors, and the elements and degrees of freedom of the fine flanks: 60 x 42 of second order."""
     lines = [line for line in overview(yang("mesh.level=standard")).splitlines() if line.startswith("  ")]
     rows = {line.strip().split("  ")[0]: line.split()[-2:] for line in lines}
     assert rows["elements along the loaded flank"] == ["60", "60"]
-    assert rows["layers over the face width"] == ["72", "72"]
-    assert rows["degrees of freedom of a sector"] == ["77,367", "77,367"]
-    assert rows["degrees of freedom of a flank"] == [f"{3 * 121 * 145:,}"] * 2
+    assert rows["layers over the face width"] == ["42", "42"]
+    assert rows["degrees of freedom of a sector"] == ["89,913", "89,913"]
+    assert rows["degrees of freedom of a flank"] == [f"{3 * 121 * 85:,}"] * 2
     assert "degrees of freedom of a flank" not in overview(yang("mesh.level=quick"))
 
 

@@ -14,7 +14,7 @@ from evolvent.gears.meshing.flank_levels import (
     levelled_sector,
 )
 from evolvent.gears.meshing.sector_meshes import gear_mesh, unmodified
-from evolvent.gears.meshing.sector_sizes import finest_cells, one_mesh_sizes
+from evolvent.gears.meshing.sector_sizes import divided_cells, finest_cells, one_mesh_sizes
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -41,7 +41,7 @@ SectorMesh = MeshData | LevelledMesh
 
 def is_two_level(problem: GearProblem) -> bool:
     """Whether the flanks have levels of their own: as the settings say or, by default, where that can be, one fine mesh
-    has more than `MOST_DOFS` degrees of freedom, and the flank's cells are not `LONGEST`."""
+    has more than `MOST_DOFS` degrees of freedom, and the flank has no long cells."""
     if problem.is_plane or problem.is_line or problem.mesh.two_level is False:
         return False
     return problem.mesh.two_level is True or (is_large(problem) and not has_long_cells(problem))
@@ -56,15 +56,16 @@ def is_large(problem: GearProblem) -> bool:
 
 
 def has_long_cells(problem: GearProblem) -> bool:
-    """Whether the finest cells of a flank are too long along the face, as a spur gear's are, for small patches."""
-    return max(_cell_lengths(problem, member) for member in Member) > LONGEST
+    """Whether the cells that the finest level divides are too long along the face, as a spur gear's are, for small
+    patches."""
+    return max(_divided_cell_length(problem, member) for member in Member) > LONGEST
 
 
-def _cell_lengths(problem: GearProblem, member: Member) -> float:
-    """Length of the finest flank cells along the face over that along the profile, on average; of the lightest torque
-    that the meshes serve, so that all torques of a list have levels or none."""
+def _divided_cell_length(problem: GearProblem, member: Member) -> float:
+    """Length along the face over that along the profile, on average, of the cells that the finest level divides; of the
+    lightest torque that the meshes serve, so that all torques of a list have levels or none."""
     sector = levelled_sector(problem.lightest, member)
-    return length_over_height(problem.pair.gears[member], sector.coarse, *finest_cells(sector))
+    return length_over_height(problem.pair.gears[member], sector.coarse, *divided_cells(sector))
 
 
 def run_mesh(problem: GearProblem, member: Member) -> SectorMesh:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 
 from evolvent.gears.meshing.element_sizes import sector_resolutions
@@ -104,6 +104,11 @@ def finest_cells(levelled: LevelledSector) -> tuple[int, int]:
     """Rows along the profile and layers along the face of the flank's finest level."""
     rows = levelled.coarse.profile_elements * prod(level.rows for level in levelled.levels)
     return rows, levelled.coarse.face_elements * prod(level.layers for level in levelled.levels)
+
+
+def divided_cells(levelled: LevelledSector) -> tuple[int, int]:
+    """Rows and layers of the flank's cells that its finest level divides."""
+    return finest_cells(replace(levelled, levels=levelled.levels[:-1]))
 
 
 def levelled_sizes(problem: GearProblem) -> tuple[LevelledSize, LevelledSize]:

@@ -17,7 +17,7 @@ from evolvent.gears.meshing.flank_levels import (
     levelled_sector,
 )
 from evolvent.gears.meshing.levelled_meshes import has_long_cells, is_two_level
-from evolvent.gears.meshing.sector_sizes import finest_cells
+from evolvent.gears.meshing.sector_sizes import divided_cells
 from evolvent.gears.problem.gear_problem import GearProblem, Level, MeshSettings
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
@@ -84,7 +84,7 @@ def test_helical_flanks_have_no_cells_that_are_too_long_for_levels(level: Level)
         assert not has_long_cells(pair)
         for member in Member:
             sector = levelled_sector(pair, member)
-            assert length_over_height(pair.pair.gears[member], sector.coarse, *finest_cells(sector)) <= LONGEST
+            assert length_over_height(pair.pair.gears[member], sector.coarse, *divided_cells(sector)) <= LONGEST
             assert sector.coarse.face_elements <= ROUNDED_UP * 28  # 25 mm over 0.9 mm
     assert is_two_level(wide_pair(level, 100e3))
 

@@ -27,7 +27,9 @@ def positions(out: Path) -> list[dict[str, object]]:
 
 
 def assert_same(found: list[dict[str, object]], wanted: list[dict[str, object]]) -> None:
-    """All numbers agree within 1e-8, but for the clock and residuals that are rounding."""
+    """All numbers agree within 1e-8, but for the clock and residuals that are rounding. Those of a tooth agree within
+    1e-8 times the largest force of a tooth over its own: Newton's method ends at a residual over the force in the whole
+    system, which is more of a lightly loaded tooth."""
     assert len(found) == len(wanted)
     for one, other in zip(found, wanted):
         assert one.keys() == other.keys()
@@ -35,8 +37,10 @@ def assert_same(found: list[dict[str, object]], wanted: list[dict[str, object]])
             assert one[name] == pytest.approx(other[name], rel=1e-8, abs=1e-8), name
         teeth, other_teeth = one["teeth"], other["teeth"]
         assert isinstance(teeth, list) and isinstance(other_teeth, list)
+        largest = max((tooth["force_N"] for tooth in other_teeth), default=0.0)
         for one_tooth, other_tooth in zip(teeth, other_teeth, strict=True):
-            assert one_tooth == pytest.approx(other_tooth, rel=1e-8, abs=1e-8, nan_ok=True)
+            within = 1e-8 * largest / max(other_tooth["force_N"], 1e-3 * largest)
+            assert one_tooth == pytest.approx(other_tooth, rel=within, abs=1e-8, nan_ok=True)
 
 
 @pytest.fixture(scope="module")

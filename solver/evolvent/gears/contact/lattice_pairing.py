@@ -67,11 +67,15 @@ def faced_points(line: ContactLine, arc: Floats, z: Floats, surfaces: tuple[Surf
 
 def with_wheel_edges(line: ContactLine, surfaces: tuple[Surface, Surface]) -> ContactLine:
     """The line with the places on the pinion's flank that really face the edges of the wheel's: rotation beyond the
-    nominal one, deflection, modifications and misalignment move them by hundredths of a millimetre.
+    nominal one, deflection, modifications and misalignment move them by hundredths of a millimetre. Far from the path
+    of contact they are taken to be moved as at its end.
 
     surfaces: flanks of pinion and wheel in place, or as they were displaced.
     """
     z, own = line.flanks[Member.PINION].height, line.flanks[Member.PINION].arc
+    z = z[line.near_path(z)]
+    if len(z) == 0:
+        return line
     edges, away = np.array(line.edges_of_wheel(z)), np.zeros((2, len(z)))  # of the wheel's root and tip
     inwards = INWARDS * line.stand.pair.pinion.normal_module * np.array([[-1.0], [1.0]])
     for start in (edges + inwards, edges):  # first where partners surely lie on the flank, then at the edges found

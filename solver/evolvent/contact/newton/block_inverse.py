@@ -19,6 +19,7 @@ from scipy.linalg import lu_factor, lu_solve
 
 from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.nitsche.surface_mass import SurfaceMass
 from evolvent_meshes.arrays import Bools, Floats, Ints, Reals, Singles
 
 TANGENTIAL = 1.2
@@ -35,11 +36,13 @@ class NearlyNormal:
     blocks: (n_i, n_i) of consecutive nodes, symmetric, in single precision [mm/N].
     modes: U (n·k, r).
     couplings: diagonal of K (r,), not zero [mm/N].
+    masses: M (n_i, n_i) of each block where the blocks are M A M, for `sum` to solve with; none where they are A.
     """
 
     blocks: tuple[Singles, ...]
     modes: Floats
     couplings: Floats
+    masses: tuple[SurfaceMass, ...] = ()
 
     @property
     def size(self) -> int:
@@ -76,10 +79,12 @@ class NearlyNormal:
 
     @staticmethod
     def sum(parts: Sequence[NearlyNormal]) -> NearlyNormal:
-        """Sum of the approximate compliances of bodies with the same blocks of nodes."""
-        blocks = tuple(sum(each[1:], each[0]) for each in zip(*(part.blocks for part in parts)))
+        """Sum of the approximate compliances of bodies with the same blocks of nodes and the same masses, as A."""
+        blocks = [sum(each[1:], each[0]) for each in zip(*(part.blocks for part in parts))]
+        if parts[0].masses:
+            blocks = [mass.sandwiched(block) for mass, block in zip(parts[0].masses, blocks)]
         return NearlyNormal(
-            blocks, np.hstack([p.modes for p in parts]), np.concatenate([p.couplings for p in parts])
+            tuple(blocks), np.hstack([p.modes for p in parts]), np.concatenate([p.couplings for p in parts])
         )
 
 

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+from scipy.linalg import cho_factor, cho_solve
 
 from evolvent.fem.lagrange import quadrature, tabulate
 from evolvent.fem.surface import Surface
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Floats, Ints, Singles
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +48,11 @@ class SurfaceMass:
         flat = np.asarray(values, dtype=float).reshape(len(values), -1)
         return np.asarray(self._factor.solve(flat)).reshape(values.shape)
 
-    @cached_property
-    def inverse(self) -> Floats:
-        """Inverse M⁻¹ (n, n)."""
-        return self.solved(np.eye(self.matrix.shape[0]))
+    def sandwiched(self, tested: Singles) -> Singles:
+        """M⁻¹ tested M⁻¹ of a symmetric matrix (n, n), in single precision."""
+        factor = cho_factor(self.matrix.toarray().astype(np.float32), overwrite_a=True, check_finite=False)
+        half = cho_solve(factor, tested, check_finite=False)
+        return np.asarray(cho_solve(factor, half.T, check_finite=False))
 
     @cached_property
     def _factor(self) -> spla.SuperLU:

@@ -43,7 +43,8 @@ class RoughFlanks:
         bending = [self._bending(t.nodes[0], C) for t, C in zip(window.teeth, window.ring.own)]
         modes = np.hstack([coupling, block_diag(*bending)])
         modes, sizes = few_modes(modes, np.append(size, np.ones(modes.shape[1] - len(size))))
-        return NearlyNormal(tuple(self._blocks(window, bending)), window.smooth(modes), sizes)
+        masses = tuple(tooth.map.projection.mass for tooth in window.teeth if tooth.map.projection is not None)
+        return NearlyNormal(tuple(self._blocks(window, bending)), window.smooth(modes), sizes, masses)
 
     def _bending(self, nodes: Ints, C: Floats) -> Floats:
         """U (c·3, b): how a tooth with compliance C (c·3, c·3) between some coarse nodes moves under normal loads that
@@ -56,8 +57,8 @@ class RoughFlanks:
         return np.asarray(solve_triangular(cholesky(P.T @ moved, lower=True), moved.T, lower=True).T)
 
     def _blocks(self, window: FlankWindow, bending: Sequence[Floats]) -> Iterator[Singles]:
-        """Normal compliance Π C Πᵀ (n, n) of each tooth's part of the contact without its bending [mm/N], Π = M⁻¹ B the
-        mortar projection of the flank."""
+        """Normal compliance B C Bᵀ (n, n) [mm⁵/N] of each tooth's part of the contact without its bending, Π = M⁻¹ B
+        the mortar projection of the flank."""
         tiles = [level.normal.among(at.strips) for level, at in zip(self.levels, window.levels)]
         first = np.zeros(len(self.levels), dtype=int)  # of a tooth's nodes
         for tooth, C, U in zip(window.teeth, window.ring.own, bending):
@@ -70,8 +71,7 @@ class RoughFlanks:
             first += [len(nodes) for nodes in tooth.nodes[1:]]
             whole = N.toarray()
             tested += whole @ self._rest(tooth.nodes[0], C, U) @ whole.T
-            inverse = tooth.map.projection.mass.inverse.astype(np.float32)
-            yield inverse @ tested @ inverse
+            yield tested
 
     def _rest(self, nodes: Ints, C: Floats, bending: Floats) -> Singles:
         """Normal compliance (c, c) [mm/N] between some coarse nodes (c,) of a tooth without its bending. C (c·3, c·3):

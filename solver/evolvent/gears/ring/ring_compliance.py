@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -35,7 +36,7 @@ from evolvent.fem.condensation.schur_complement import SectorCondensation
 from evolvent.gears.ring.chain_settings import ChainSettings
 from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_modes import Coupling, coupling
-from evolvent.gears.ring.ring_window import RingWindow
+from evolvent.gears.ring.ring_window import RingWindow, TeethCoupling
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.rotation import turn
 
@@ -161,9 +162,8 @@ class ChainedCompliance:
         """Compliance between some nodes (k,) of some teeth, each at most once. Raises IndexError."""
         self._check([(tooth, node) for tooth, nodes in parts for node in nodes])
         dofs = [_dofs(nodes, self.dimension) for _, nodes in parts]
-        teeth = [tooth for tooth, _ in parts]
-        coupling = np.block([[self._between(tooth, other) for other in teeth] for tooth in teeth])
         own = tuple(self._own(nodes) for _, nodes in parts)
+        coupling = self._coupling_of(tuple(tooth for tooth, _ in parts))
         return RingWindow(own, tuple(self.coupling.modes[each] for each in dofs), coupling)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
@@ -241,6 +241,17 @@ class ChainedCompliance:
 
     def _between(self, tooth: int, other: int) -> Floats:
         return self.coupling.between(self._place(tooth), self._place(other))
+
+    def _coupling_of(self, teeth: tuple[int, ...]) -> TeethCoupling:
+        """Coupling of some teeth, made once: it is the same at all positions."""
+        if teeth not in self._couplings:
+            blocks = [[self._between(tooth, other) for other in teeth] for tooth in teeth]
+            self._couplings[teeth] = TeethCoupling(np.block(blocks))
+        return self._couplings[teeth]
+
+    @cached_property
+    def _couplings(self) -> dict[tuple[int, ...], TeethCoupling]:
+        return {}
 
     def _turn(self, tooth: int) -> Floats:
         return turn(tooth * self.settings.pitch, self.dimension)

@@ -4,10 +4,35 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from evolvent_meshes.arrays import Floats, Ints, Reals
+from evolvent_meshes.arrays import Floats, Ints, Reals, Singles
+
+
+@dataclass(frozen=True, eq=False)
+class TeethCoupling:
+    """Coupling of some teeth through all sectors between them, whatever nodes of their flanks touch.
+
+    matrix: (teeth·r, teeth·r), displacements of modes by forces on modes [mm/N].
+    """
+
+    matrix: Floats
+
+    def of(self, dtype: Any) -> Reals:
+        """The matrix in a precision."""
+        return self._single if dtype == np.float32 else self.matrix
+
+    @cached_property
+    def principal(self) -> tuple[Floats, Floats]:
+        """Eigenvalues λ (teeth·r,) and eigenvectors Q (teeth·r, teeth·r)."""
+        λ, Q = np.linalg.eigh(0.5 * (self.matrix + self.matrix.T))
+        return λ, Q
+
+    @cached_property
+    def _single(self) -> Singles:
+        return self.matrix.astype(np.float32)
 
 
 @dataclass(frozen=True)
@@ -16,32 +41,31 @@ class RingWindow:
 
     own: one a tooth, (m_t·d, m_t·d) compliance of its sector [mm/N].
     modes: one a tooth, (m_t·d, r), of the coupling of sectors.
-    coupling: (teeth·r, teeth·r), displacements of modes by forces on modes [mm/N].
+    coupling: of these teeth.
     """
 
-    own: tuple[Reals, ...]
-    modes: tuple[Reals, ...]
-    coupling: Reals
+    own: tuple[Floats, ...]
+    modes: tuple[Floats, ...]
+    coupling: TeethCoupling
 
     @property
     def nbytes(self) -> int:
-        """Memory [bytes], its copy in single precision included."""
-        return sum(each.nbytes + 4 * each.size for each in (*self.own, *self.modes, self.coupling))
+        """Memory [bytes], its copy in single precision included, without the coupling, which belongs to the gear."""
+        return sum(each.nbytes + 4 * each.size for each in (*self.own, *self.modes))
 
     def times(self, forces: Reals) -> Reals:
         """Displacements (Σm_t, d) under forces (Σm_t, d), of their precision."""
-        if forces.dtype == np.float32 != self.coupling.dtype:
-            return self._single.times(forces)
+        own, modes = self._single if forces.dtype == np.float32 else (self.own, self.modes)
         parts = [part.ravel() for part in np.split(forces, self._ends // forces.shape[1])]
-        amplitudes = self.coupling @ np.concatenate([f @ U for f, U in zip(parts, self.modes)])
-        each = np.split(amplitudes, len(self.own))
-        moved = [C @ f + U @ a for C, U, f, a in zip(self.own, self.modes, parts, each)]
+        amplitudes = self.coupling.of(forces.dtype) @ np.concatenate([f @ U for f, U in zip(parts, modes)])
+        each = np.split(amplitudes, len(own))
+        moved = [C @ f + U @ a for C, U, f, a in zip(own, modes, parts, each)]
         return np.concatenate(moved).reshape(forces.shape)
 
     def leading(self, tolerance: float) -> tuple[Floats, Floats]:
         """Modes V (Σm_t·d, s) and amounts κ (s,): V κ Vᵀ is the coupling of all teeth without modes below `tolerance`
         of the largest."""
-        λ, Q = np.linalg.eigh(0.5 * (self.coupling + self.coupling.T))
+        λ, Q = self.coupling.principal
         kept = np.abs(λ) > tolerance * np.abs(λ).max()
         parts = np.split(Q[:, kept], len(self.own))
         return np.concatenate([U @ part for U, part in zip(self.modes, parts)]), λ[kept]
@@ -51,6 +75,7 @@ class RingWindow:
         return np.cumsum([len(C) for C in self.own])[:-1]
 
     @cached_property
-    def _single(self) -> RingWindow:
+    def _single(self) -> tuple[tuple[Singles, ...], tuple[Singles, ...]]:
+        """Compliances and modes in single precision."""
         own, modes = (tuple(each.astype(np.float32) for each in group) for group in (self.own, self.modes))
-        return RingWindow(own, modes, self.coupling.astype(np.float32))
+        return own, modes

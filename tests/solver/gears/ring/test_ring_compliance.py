@@ -206,6 +206,24 @@ def test_naming_fewer_teeth_of_a_ring_changes_nothing() -> None:
     assert np.abs(window.jumps(parts(rows)) - wanted).max() < 1e-14 * np.abs(wanted).max()
 
 
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_window_of_some_teeth_has_their_compliance(dtype: type) -> None:
+    """Products with forces in the sectors' frames are those of the matrix between the same nodes, in either precision;
+    the coupling of the same teeth is made once, whatever their nodes."""
+    gear, wanted = chained("2D"), [(-1, np.array([1, 2])), (1, np.array([0, 3]))]
+    window = gear.window(wanted)
+    rows = np.array([(tooth, node) for tooth, nodes in wanted for node in nodes])
+    f = np.random.default_rng(5).normal(size=(4, 2))
+    turns = [turned(tooth * PITCH, 2) for tooth, _ in rows]
+    moved = gear.apply(rows, np.array([R @ each for R, each in zip(turns, f)]), rows)
+    exact = np.array([R.T @ each for R, each in zip(turns, moved)])
+    found = window.times(f.astype(dtype))
+    assert found.dtype == dtype
+    assert found == pytest.approx(exact, abs=(1e-6 if dtype == np.float32 else 1e-12) * np.abs(exact).max())
+    assert gear.window([(-1, np.array([0])), (1, np.array([2]))]).coupling is window.coupling
+    assert gear.window(wanted[:1]).coupling is not window.coupling
+
+
 def test_pitch_of_a_closed_ring_must_divide_the_circle() -> None:
     """17.5 sectors, or 8 teeth of 7, cannot be closed."""
     with pytest.raises(ValueError, match=r"17\.500000 to the circle"):

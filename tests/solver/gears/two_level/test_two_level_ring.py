@@ -16,7 +16,7 @@ from evolvent.contact.nitsche.mortar_projection import MortarProjection
 from evolvent.contact.nitsche.surface_mass import SurfaceMass
 from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_compliance import MappedNodes
-from evolvent.gears.ring.ring_window import RingWindow
+from evolvent.gears.ring.ring_window import RingWindow, TeethCoupling
 from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.arrays import Floats, Ints
@@ -40,7 +40,7 @@ class RandomRing:
         for i in range(len(parts)):
             coupling[i * COARSE * D : (i + 1) * COARSE * D, i * COARSE * D : (i + 1) * COARSE * D] = 0.0
         modes = tuple(np.eye(COARSE * D)[dofs_of(np.column_stack([0 * n, n]), COARSE)] for _, n in parts)
-        return RingWindow(own, modes, coupling)
+        return RingWindow(own, modes, TeethCoupling(coupling))
 
 
 def dofs_of(rows: Ints, size: int) -> Ints:

@@ -185,6 +185,8 @@ class _RankedSweep:
         contact, load = contact.with_bodies(self.model.bodies), self.model.load
         sent = self.broadcasts[root].send(large)
         assert sent is not None
+        if self.comm.rank == root and isinstance(sent, NearlyNormal):
+            return prepared  # all of it is here, and no larger than a copy
         if isinstance(sent, NearlyNormal):
             sent = contact.geometry.compliance(sent.k, rough=sent)
         system = contact.system_with(sent, load.on, load.at(contact.stand.angle))

@@ -131,7 +131,9 @@ def _unsearched_pairs(
     moved = farthest_moved(geometry.stand.pair)
     moved = moved if moved > WITHIN_WINDOW * geometry.half_width else 0.0
     if pinion.levels:
-        line = with_wheel_edges(ContactLine((pinion.cells, wheel.cells), geometry.stand, tooth), flanks)
+        known = (t.wheel_edges for t in geometry.teeth if t.tooth == tooth and t.displaced is None)
+        line = ContactLine((pinion.cells, wheel.cells), geometry.stand, tooth, next(known, None))
+        line = with_wheel_edges(line, flanks) if line.wheel_edges is None else line
         return unsearched_pairs(line, geometry.half_width, moved, flanks, reach, depth)
     facets = _unsearched_facets(geometry, tooth, moved)
     return pair_surfaces(*flanks, reach, depth, facets) if len(facets) else None

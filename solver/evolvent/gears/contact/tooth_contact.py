@@ -41,6 +41,7 @@ class ToothContact:
     z: (n,) heights of the jump's nodes [mm].
     arc: (n,) profile arc of these on the pinion's flank, from the base circle on [mm].
     displaced: displacements with which the flanks were searched, None where they are undeflected.
+    wheel_edges: where the edges of the wheel's flank face the pinion's, see `ContactLine`; None without a lattice.
     """
 
     tooth: int
@@ -51,6 +52,7 @@ class ToothContact:
     z: Floats
     arc: Floats
     displaced: Displaced | None = None
+    wheel_edges: tuple[Floats, Floats] | None = None
 
     def coupled_nodes(self, gear: Member) -> Ints:
         """Flank nodes of a gear that the jump depends on, sorted."""
@@ -147,7 +149,10 @@ def _on_lattice(
     )
     cell, last = lattice.cell[kept], _in_last_rows(bodies, pairing)
     distance = np.abs(lattice.point_across[kept])
-    return ToothContact(tooth, operator, pairing, np.isin(cell, cell[last]), distance, lattice.z, lattice.arc)
+    return ToothContact(
+        tooth, operator, pairing, np.isin(cell, cell[last]), distance, lattice.z, lattice.arc,
+        wheel_edges=line.wheel_edges,
+    )
 
 
 def _reading_tips(bodies: tuple[GearBody, GearBody], operator: ContactOperator) -> Bools:

@@ -3,16 +3,16 @@
 Search, compliance and the frictionless equilibrium are most of a position. They do not depend on the friction of the
 position before, and where their search starts makes no difference. Friction follows position by position, the
 coefficients divided among the ranks, which read the prepared positions from the same memory. A single coefficient
-cannot be divided: there one rank prepares the next position while another solves friction at this one.
+cannot be divided: there one rank prepares the next positions while another solves friction at this one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
+from itertools import pairwise, repeat
 
 from mpi4py import MPI
 
@@ -22,6 +22,7 @@ from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
+from evolvent.fem.parallel.background import computed_ahead
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import SharedBroadcast, together
 from evolvent.gears.contact.overlap_check import UnsearchedOverlap
@@ -37,6 +38,9 @@ from evolvent.gears.sweep.position_search import (
 )
 
 PREPARING = 2  # ranks: from further away a search takes longer
+AHEAD, AHEAD_AGAIN = 2, 1
+"""Positions that are prepared before friction is solved at them; the fewer where a pitch that is solved again may close
+at any position. Positions take one and a half times as long where a search is repeated, or where friction turns."""
 
 
 def sweep_on_ranks(
@@ -101,36 +105,36 @@ class _RankedSweep:
             begin = numbers.stop
 
     def ahead(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
-        """All positions from number `begin` on, for one friction coefficient. Rank 1 prepares, and starts each search
-        where the one before has led; rank 0, which has less to do, looks for contact outside the window of what is
-        prepared, and solves friction."""
-        prepared: SharedPosition | None = None
-        place = state
-        for k in range(begin - 1, len(self.pitch.angles)):
-            coming = range(k + 1, min(k + 2, len(self.pitch.angles)))
-            work = partial(self._one_ahead, k, begin, coming, state, place, prepared)
-            solved, mine = together(self.comm, work, self.cores.lent)
-            solved = self.comm.bcast(solved, 0)
-            prepared = self._broadcast(mine, 1) if coming else None
-            del mine  # a matrix is in the shared memory
+        """All positions from number `begin` on, for one friction coefficient. Rank 1 prepares them in the background;
+        rank 0, which has less to do, looks for contact outside the window of what is prepared, and solves friction."""
+        numbers, count = range(begin, len(self.pitch.angles)), AHEAD_AGAIN if self.known else AHEAD
+        own = self._in_turn(numbers, state) if self.comm.rank == 1 else repeat(None)
+        with closing(computed_ahead(own, count)) if self.comm.rank == 1 else nullcontext(own) as source:
+            for k in numbers:
+                prepared = self._broadcast(together(self.comm, partial(next, source)), 1)
+                solved = together(self.comm, partial(self._with_friction, k, state, prepared))
+                solved = self.comm.bcast(solved, 0)
+                assert solved is not None
+                state = solved.state
+                yield solved
+
+    def _in_turn(self, numbers: range, place: SweepState) -> Iterator[SharedPosition | None]:
+        """Positions `numbers` prepared one after the other, each search started where the one before has led; None
+        where there is no solution."""
+        for k in numbers:
+            prepared = self._without_friction(k, place, overlaps=False)
             if prepared is not None:
                 course = course_after(self.model, prepared, place.course)
                 found = prepared.contact.stand.beyond_nominal
                 place = replace(place, beyond_nominal=found, patch=prepared.patch, course=course)
-            if solved is not None:
-                state = solved.state
-                yield solved
+            yield prepared
 
-    def _one_ahead(
-        self, k: int, begin: int, coming: range, state: SweepState, place: SweepState, prepared: SharedPosition | None
-    ) -> tuple[SweptPosition | None, SharedPosition | None]:
-        """Position k with friction on rank 0, the coming one without it on rank 1."""
-        if self.comm.rank == 1 and coming:
-            return None, self._without_friction(coming.start, place, overlaps=False)
-        if self.comm.rank == 0 and k >= begin:
-            common = None if prepared is None else self._accepted(prepared)
-            return next(sweep_pitch(self.model, self.pitch, self.frictions, state, k, common, self.known)), None
-        return None, None
+    def _with_friction(self, k: int, state: SweepState, prepared: SharedPosition | None) -> SweptPosition | None:
+        """Position k with friction, on rank 0."""
+        if self.comm.rank != 0:
+            return None
+        common = None if prepared is None else self._accepted(prepared)
+        return next(sweep_pitch(self.model, self.pitch, self.frictions, state, k, common, self.known))
 
     def _accepted(self, prepared: SharedPosition) -> SharedPosition | None:
         """A position prepared without a look outside its window; None where there is contact: then it is searched

@@ -12,12 +12,12 @@ from evolvent.gears.meshing.flank_levels import LevelledSector
 from evolvent.gears.meshing.sector_sizes import LevelledSize
 from evolvent_meshes.gears.member import Member
 
-POSITION_PER_DOF, POSITION_PER_LEVEL = 2.46e-3, 2250.0
+POSITION_PER_DOF, POSITION_PER_LEVEL = 3.5e-3, 1300.0
 """Memory [MB] of corrections and of a position on two ranks: per degree of freedom of both finest flanks, and for each
 level after the first."""
 SHARED, OWN = 0.2, 0.4
 """Shares of the memory of positions on two ranks: that of all ranks together, and that of each rank."""
-PATCH_PER_NODE = {False: 1.25, True: 1.73}
+PATCH_PER_NODE = {False: 0.88, True: 1.21}
 """Memory [MB] of condensing a patch per node of its flank, without and with the functionals of Nitsche's method, which
 the finest level of the pinion has."""
 PATCH_LAYERS, PATCH_ROWS, WHOLE_PROFILE = 5, 9, 17

@@ -35,7 +35,7 @@ class SurfaceCompliance(Protocol):
         ...
 
     def nearly(self) -> NearlyNormal:
-        """Approximation of the contribution as block matrix and modes, for preconditioning."""
+        """Approximation of the contribution as block matrix and modes, for `NearlyNormal.sum`."""
         ...
 
     @property

@@ -33,7 +33,7 @@ NEGLIGIBLE = 1e-3
 class NearlyNormal:
     """Approximate compliance of n nodes with k components: blocks of normal components, and modes of all components.
 
-    blocks: (n_i, n_i) of consecutive nodes, symmetric, in single precision [mm/N].
+    blocks: (n_i, n_i) of consecutive nodes, symmetric, in single precision [mm/N; with masses mm⁵/N].
     modes: U (n·k, r).
     couplings: diagonal of K (r,), not zero [mm/N].
     masses: M (n_i, n_i) of each block where the blocks are M A M, for `sum` to solve with; none where they are A.
@@ -61,15 +61,18 @@ class NearlyNormal:
 
     def normal(self, k: int) -> NearlyNormal:
         """Approximate compliance between normal components alone."""
+        assert not self.masses
         return NearlyNormal(self.blocks, self.modes[::k], self.couplings)
 
     def with_modes(self, other: NearlyNormal) -> NearlyNormal:
         """Approximate compliance with the modes of another one added."""
+        assert not self.masses
         couplings = np.concatenate([self.couplings, other.couplings])
         return NearlyNormal(self.blocks, np.hstack([self.modes, other.modes]), couplings)
 
     def of_few_modes(self) -> NearlyNormal:
         """Approximate compliance with few orthogonal modes in place of U."""
+        assert not self.masses
         return NearlyNormal(self.blocks, *few_modes(self.modes, self.couplings))
 
     @property
@@ -227,7 +230,7 @@ class BlockInverse:
 
 def _factored(A: Singles, M: sp.csr_matrix) -> tuple[Singles, Ints]:
     """LU factors of I + A Mᵀ. Raises NotConverged where it is singular."""
-    T = (M @ A.T).T  # A is symmetric, but for the components that its rows leave out
+    T = (M @ A.T).T  # a sparse matrix from the left is what SciPy multiplies with
     T[np.diag_indices(len(T))] += 1.0
     factor, pivots = lu_factor(T, overwrite_a=True, check_finite=False)
     if not np.all(np.diag(factor)):

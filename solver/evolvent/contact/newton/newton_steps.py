@@ -1,6 +1,6 @@
 """Linear solves T y = b of the Newton steps of one contact system, which reuse factors from step to step.
 
-An approximate inverse of the tangent as a preconditioner leads GMRES to T⁻¹ b in about five iterations. Where the
+An approximate inverse of the tangent as a preconditioner leads GMRES to T⁻¹ b in two to five iterations. Where the
 compliance is a matrix, a third of its columns gives that inverse (tangent.py), and single precision halves the memory
 that is read; where it is known by products, `block_inverse` does. Only the active unknowns take part: outside the nodes
 in contact T is the identity. Terms of T y nearly cancel, so that single precision gives about five digits; for more,

@@ -2,7 +2,8 @@
 
 The jump between the bodies lives in the space of surface 1: J = e_1 − Πu_2 at its nodes. e_1 = u_1 − F is the extended
 trace of body 1 and Π the L2 projection of body 2's trace along the normals of surface 1 (a mortar method: integrated
-over segments, so that non-matching meshes pass the patch test). The contact law holds at the quadrature points x_q:
+over segments, so that non-matching meshes pass the patch test). Or it has a space of its own (`JumpSpace`), onto which
+both are projected: J = Π_1 e_1 − Π_2 u_2. The contact law holds at the quadrature points x_q:
 
     p(x) = γ(x) [Σ_k N_k(x) n_k·J_k − g(x)] ,   q(x) = γ_t(x) [Σ_k N_k(x) J_k + s(x)]_t
     λ = [p]_+ ,  τ = P_B(μλ)(q)                                   (local components, frames at the nodes)
@@ -41,12 +42,13 @@ ContactLaw = Callable[[Floats], LawValues]
 class ContactOperator:
     """Jump at n nodes of surface 1 and contact at q points on it, in the common frame.
 
-    nodes: (m,) indices of the nodes in surface 1 about the points; of a jump in the space of surface 1 m = n.
+    nodes: (m,) indices of the nodes of surface 1 about the points: those of the jump (m = n), but where the jump has a
+        space of its own.
     frames: (n, d, d) nodal frames, rows normal, t1[, t2].
     jump1: (n, n1) and
     jump2: (n, n2) weights of the jump J = jump1·e_1 − jump2·u_2.
-    mass: (m, m) ∫N_k N_l on surface 1 where the bodies are placed, of a jump in a space of its own at the points
-        [mm²; mm in 2D].
+    mass: (m, m) ∫N_k N_l over all of surface 1 about these nodes; where the jump has a space of its own, over the
+        quadrature points [mm²; mm in 2D].
     trace: (q, m) shape functions of surface 1 at the points.
     shape: (q, n) shape functions of the jump at the points.
     hat: (q, m) piecewise linear hat functions of surface 1 at the points.
@@ -127,7 +129,7 @@ class ContactOperator:
         return sandwiched(self.shape[active], law.derivative[active] * slope[:, None])
 
     def averaged(self, traction: Floats) -> tuple[Floats, Floats]:
-        """Weights m_j (n,) and tractions t_j (n, k) averaged with the hat functions: Σ m_j t_j is the total force."""
+        """Weights m_j (m,) and tractions t_j (m, k) averaged with the hat functions: Σ m_j t_j is the total force."""
         m = self.hat.T @ self.weights
         mean = self.hat.T @ (self.weights[:, None] * traction)
         return m, mean / np.where(m > 0.0, m, 1.0)[:, None]

@@ -92,7 +92,6 @@ class MortarProjection:
         return {"mass": self.mass, "mixed": self.mixed}
 
 
-
 def _times(matrix: sp.csr_matrix, values: Floats) -> Floats:
     """A sparse matrix applied along the first axis of values (n, ...)."""
     flat = matrix @ values.reshape(len(values), -1)

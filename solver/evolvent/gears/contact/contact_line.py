@@ -27,7 +27,8 @@ SHORT = 1e-3
 
 @dataclass(frozen=True)
 class ContactLine:
-    """Contact line of a tooth pair; in slices where it has left a flank, the end of the path of contact there.
+    """Contact line of a tooth pair: where conjugate flanks touch or, with modifications along the profile, are nearest.
+    In slices where that of conjugate flanks has left a flank, the end of the path of contact there.
 
     flanks: cells of the flanks of pinion and wheel.
     stand: angular position of the gears.

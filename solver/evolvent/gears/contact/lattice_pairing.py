@@ -18,7 +18,7 @@ from evolvent.gears.two_level.flank_cells import FlankCells, FlankPlaces
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 
-BEYOND = 0.1
+CONTINUED = 0.1
 """How far beyond its last cells, over these, the wheel's flank is continued: modifications and misalignment move the
 image of its tip."""
 INWARDS = 0.1
@@ -45,7 +45,7 @@ class FacedPoints:
     @property
     def inside(self) -> Bools:
         """Whether the partners lie on the wheel's flank, (q,) bool."""
-        return np.asarray(np.all((self.partner.at > -BEYOND) & (self.partner.at < 1.0 + BEYOND), axis=1))
+        return np.asarray(np.all((self.partner.at > -CONTINUED) & (self.partner.at < 1.0 + CONTINUED), axis=1))
 
 
 def faced_points(line: ContactLine, arc: Floats, z: Floats, surfaces: tuple[Surface, Surface]) -> FacedPoints:

@@ -34,8 +34,9 @@ LENGTHENED = 2.0
 """How many times as many layers as the contact wants a flank gets, at most, so that its cells are no longer than that:
 one mesh in place of levels takes several times as much memory."""
 ROUNDED_UP = 1.5
-"""Largest number of coarse layers over the fewest ones: with more of them, a level halves the layers. Cells of finer
-levels are what patches cost: those of Yang's pair at standard take 64 s with two levels that halve, 34 s with one."""
+"""Number of coarse layers over the fewest ones from which on a level halves the layers, where there is one that may.
+Cells of finer levels are what patches cost: those of Yang's pair at standard take 64 s with two levels that halve, 34 s
+with one."""
 SHEAR = {"quick": 0.85, "standard": 0.9, "fine": 0.85}
 """Elements of the finest level by which a layer may shear the pressure ridge, on average along the profile. Cells of
 the contact follow its lines (`gears.contact.contact_lattice`), those of the body need not. Nine in ten peak pressures

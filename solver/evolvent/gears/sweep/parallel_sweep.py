@@ -13,6 +13,7 @@ from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise, repeat
+from typing import cast
 
 from mpi4py import MPI
 
@@ -95,7 +96,7 @@ class _RankedSweep:
         while begin < len(self.pitch.angles):
             numbers = range(begin, min(begin + PREPARING, len(self.pitch.angles)))
             mine = together(self.comm, partial(self._prepared, numbers, state), self.cores.lent)
-            prepared = [self._broadcast(mine, root) for root in range(len(numbers))]
+            prepared = [self._sent(mine, root) for root in range(len(numbers))]
             del mine  # its compliance is in the shared memory
             solved = together(self.comm, partial(self._solved, numbers, state, prepared), self.cores.lent)
             parts = [part for part in self.comm.allgather(solved) if part]
@@ -107,12 +108,14 @@ class _RankedSweep:
     def ahead(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
         """All positions from number `begin` on, for one friction coefficient. Rank 1 prepares them in the background;
         rank 0, which has less to do, looks for contact outside the window of what is prepared, and solves friction."""
-        numbers, count = range(begin, len(self.pitch.angles)), AHEAD_AGAIN if self.known else AHEAD
-        own = self._in_turn(numbers, state) if self.comm.rank == 1 else repeat(None)
-        with closing(computed_ahead(own, count)) if self.comm.rank == 1 else nullcontext(own) as source:
+        numbers, prepares = range(begin, len(self.pitch.angles)), self.comm.rank == 1
+        own = self._in_turn(numbers, state) if prepares else repeat(None)
+        waiting = nullcontext if prepares else self.cores.lent  # the core of rank 1 is in use while it waits
+        count = AHEAD_AGAIN if self.known else AHEAD
+        with closing(computed_ahead(own, count)) if prepares else nullcontext(own) as source:
             for k in numbers:
-                prepared = self._broadcast(together(self.comm, partial(next, source)), 1)
-                solved = together(self.comm, partial(self._with_friction, k, state, prepared))
+                prepared = self._sent(together(self.comm, partial(next, source), waiting), 1)
+                solved = together(self.comm, partial(self._with_friction, k, state, prepared), waiting)
                 solved = self.comm.bcast(solved, 0)
                 assert solved is not None
                 state = solved.state
@@ -129,11 +132,11 @@ class _RankedSweep:
                 place = replace(place, beyond_nominal=found, patch=prepared.patch, course=course)
             yield prepared
 
-    def _with_friction(self, k: int, state: SweepState, prepared: SharedPosition | None) -> SweptPosition | None:
+    def _with_friction(self, k: int, state: SweepState, prepared: _SentPosition | None) -> SweptPosition | None:
         """Position k with friction, on rank 0."""
         if self.comm.rank != 0:
             return None
-        common = None if prepared is None else self._accepted(prepared)
+        common = None if prepared is None else self._accepted(prepared.received(self.model))
         return next(sweep_pitch(self.model, self.pitch, self.frictions, state, k, common, self.known))
 
     def _accepted(self, prepared: SharedPosition) -> SharedPosition | None:
@@ -162,20 +165,21 @@ class _RankedSweep:
             return None
 
     def _solved(
-        self, numbers: range, state: SweepState, prepared: list[SharedPosition | None]
+        self, numbers: range, state: SweepState, prepared: list[_SentPosition | None]
     ) -> list[SweptPosition]:
         """Positions `numbers` solved with the friction coefficients of this rank, none if it has none. prepared: the
         positions without friction, None where there was no solution: then each rank searches by itself."""
         own = division(len(self.frictions), self.comm.size)[self.comm.rank]
         mine, swept = replace(state, histories=state.histories[own]), []
-        for k, common in zip(numbers, prepared) if self.frictions[own] else ():
+        for k, sent in zip(numbers, prepared) if self.frictions[own] else ():
+            common = None if sent is None else sent.received(self.model)
             swept.append(next(sweep_pitch(self.model, self.pitch, self.frictions[own], mine, k, common, self.known)))
             mine = swept[-1].state
         return swept
 
-    def _broadcast(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
-        """Position prepared by rank `root`, on all ranks. It is sent without the gears, which all have; its compliance
-        goes through shared memory, or as its approximate matrix where all ranks can apply the compliance itself."""
+    def _sent(self, prepared: SharedPosition | None, root: int) -> _SentPosition | None:
+        """Position prepared by rank `root`, on all ranks. Its compliance goes through shared memory, or as its
+        approximate matrix where all ranks can apply the compliance itself."""
         bare: tuple[GearContact, Equilibrium, tuple[UnsearchedOverlap, ...]] | None = None
         large: NearlyNormal | JumpCompliance | None = None
         if prepared is not None:
@@ -186,12 +190,28 @@ class _RankedSweep:
         if received is None:
             return None
         contact, smooth, unsearched = received
-        contact, load = contact.with_bodies(self.model.bodies), self.model.load
-        sent = self.broadcasts[root].send(large)
+        sent = cast("NearlyNormal | JumpCompliance | None", self.broadcasts[root].send(large))
         assert sent is not None
-        if self.comm.rank == root and isinstance(sent, NearlyNormal):
-            return prepared  # all of it is here, and no larger than a copy
-        if isinstance(sent, NearlyNormal):
-            sent = contact.geometry.compliance(sent.k, rough=sent)
-        system = contact.system_with(sent, load.on, load.at(contact.stand.angle))
-        return SharedPosition(contact, system, smooth, unsearched)
+        return _SentPosition(contact, smooth, unsearched, sent)
+
+
+@dataclass(frozen=True)
+class _SentPosition:
+    """A prepared position on its way between ranks, without the gears, which all have.
+
+    contact, smooth, unsearched: of the `SharedPosition`.
+    compliance: of its system, or the approximate matrix of that; valid until the next one is sent.
+    """
+
+    contact: GearContact
+    smooth: Equilibrium
+    unsearched: tuple[UnsearchedOverlap, ...]
+    compliance: NearlyNormal | JumpCompliance
+
+    def received(self, model: GearModel) -> SharedPosition:
+        """The position with its gears."""
+        contact, load, compliance = self.contact.with_bodies(model.bodies), model.load, self.compliance
+        if isinstance(compliance, NearlyNormal):
+            compliance = contact.geometry.compliance(compliance.k, rough=compliance)
+        system = contact.system_with(compliance, load.on, load.at(contact.stand.angle))
+        return SharedPosition(contact, system, self.smooth, self.unsearched)

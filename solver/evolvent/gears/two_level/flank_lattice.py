@@ -61,12 +61,6 @@ class FlankLattice:
         rows = np.searchsorted(self.radius, radius - SAME)
         return np.column_stack([rows, np.searchsorted(self.height, points[:, 2] - SAME)])
 
-    def at(self, numbers: Ints) -> Floats:
-        """Positions (n, 3) of the nodes with these numbers [mm]."""
-        points = np.empty((self.nodes.size, 3))
-        points[self.nodes.ravel()] = self.points.reshape(-1, 3)
-        return points[numbers]
-
     def interpolation(self, points: Floats) -> sp.csr_matrix:
         """Interpolation (n, nodes) from values at the nodes to those at points (n, 3) of the flank, linear between four
         nodes."""

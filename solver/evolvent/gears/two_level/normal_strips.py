@@ -43,35 +43,35 @@ class NormalStrips:
 
     def among(self, loaded: LoadedStrips) -> NormalTiles:
         """Normal correction [mm/N] between the nodes (k,) of `loaded`."""
-        order, limit = np.argsort(loaded.place), self._reach
+        order = np.argsort(loaded.place)
         place, number = loaded.place[order], np.full(len(order) + 1, -1, dtype=np.int32)
         number[order] = np.arange(len(order), dtype=np.int32)
-        starts, first, ends = self._tiles(place, limit)
+        starts, first, ends = self._tiles(place)
         widths, heights = ends - first, np.diff(starts)
         offsets = np.append(0, np.cumsum(widths * heights))
         row = np.arange(len(place)) - np.repeat(starts[:-1], heights)
         base = np.repeat(offsets[:-1] - first, heights) + row * np.repeat(widths, heights)
         values = np.zeros(offsets[-1], dtype=np.float32)
-        for rows, columns, change in self._entries(loaded, number, limit):
+        for rows, columns, change in self._entries(loaded, number):
             values[base[rows] + columns] = change
         tiles = [values[a:b].reshape(-1, w) for a, b, w in zip(offsets, offsets[1:], widths)]
         return NormalTiles(number[:-1].astype(np.int64), starts, first, tuple(tiles))
 
-    def _tiles(self, place: Ints, limit: int) -> tuple[Ints, Ints, Ints]:
+    def _tiles(self, place: Ints) -> tuple[Ints, Ints, Ints]:
         """First row of each tile and their number, first column and last + 1 of each: tiles are as many levels high as
-        a layer, and have `limit` more below and above. place: (k,) sorted."""
+        a layer, and have as many more below and above as are coupled. place: (k,) sorted."""
         levels, rows = self.correction.numbers.shape
         tooth, level = np.divmod(place // rows, levels)
         layer = level // self.correction.per_layer
         starts = np.flatnonzero(np.diff(tooth * levels + layer, prepend=-1))
-        low = layer[starts] * self.correction.per_layer
-        bottom, top = np.maximum(low - limit, 0), np.minimum(low + self.correction.per_layer + limit, levels)
+        high = self.correction.per_layer
+        low = layer[starts] * high
+        bottom, top = np.maximum(low - self._reach, 0), np.minimum(low + high + self._reach, levels)
         first, ends = (np.searchsorted(place, (tooth[starts] * levels + each) * rows) for each in (bottom, top))
         return np.append(starts, len(place)), first, ends
 
-    def _entries(self, loaded: LoadedStrips, number: Indices, limit: int) -> Iterator[tuple[Indices, Indices, Singles]]:
-        """Rows, columns and values of each strip, between nodes up to `limit` levels apart. number: (k + 1,) of the
-        nodes in the tiles' order, −1 for none."""
+    def _entries(self, loaded: LoadedStrips, number: Indices) -> Iterator[tuple[Indices, Indices, Singles]]:
+        """Rows, columns and values of each strip. number: (k + 1,) of the nodes in the tiles' order, −1 for none."""
         start = end = 0
         for strip, count in zip(loaded.strips, loaded.counts):
             change = self._change[id(strip)]
@@ -79,11 +79,9 @@ class NormalStrips:
             sources = number[loaded.sources[start : start + count * q]].reshape(count, q)
             moved = number[loaded.around[end : end + count * p]].reshape(count, p)
             start, end = start + count * q, end + count * p
-            rise = np.abs(_levels(strip.source, strip.sources)[:, None] - _levels(strip.start, strip.moved))
             used, near = np.flatnonzero((sources >= 0).any(axis=0)), np.flatnonzero((moved >= 0).any(axis=0))
-            both = (rise <= limit)[np.ix_(used, near)]
             sources, moved = sources[:, used], moved[:, near]
-            both = (sources >= 0)[:, :, None] & (moved >= 0)[:, None] & both
+            both = (sources >= 0)[:, :, None] & (moved >= 0)[:, None]
             of_all = sources[:, :, None], moved[:, None], change[np.ix_(used, near)][None]
             rows, columns, values = (np.broadcast_to(each, both.shape)[both] for each in of_all)
             yield rows, columns, values

@@ -2,48 +2,74 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from threading import Event, current_thread, main_thread
+from time import monotonic, sleep
 
 import pytest
 from mpi4py import MPI
 
 from evolvent.fem.parallel.background import computed_ahead
 
-LONG = 20.0  # [s] that a test waits for a thread at most
+LONG, PAUSE = 20.0, 0.01
+"""How long a test waits for a thread at most, and between two looks [s]."""
 
 
-def counted(begun: list[int], ready: Event, count: int = 10) -> Iterator[int]:
-    """Numbers from 0 on, each noted in `begun` as it is computed; `ready` is set at the third."""
-    for number in range(count):
-        assert current_thread() is not main_thread()
-        begun.append(number)
-        if number == 2:
-            ready.set()
-        yield number
+@pytest.fixture(autouse=True)
+def threads_in_mpi(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if MPI allowed calls from several threads; none are made here."""
+    monkeypatch.setattr(MPI, "Query_thread", lambda: MPI.THREAD_MULTIPLE)
 
 
 def test_items_come_in_order_and_ahead() -> None:
-    """Two items ahead: while the first is used, the second and the third are computed, and no fourth."""
+    """Two items ahead: before the first has been used, the second and the third are computed, and no fourth: the thread
+    has nothing else to do when it has computed the third."""
     begun: list[int] = []
-    ready = Event()
-    with closing(computed_ahead(counted(begun, ready), 2)) as items:
+
+    def counted() -> Iterator[int]:
+        for number in range(10):
+            assert current_thread() is not main_thread()
+            begun.append(number)
+            yield number
+
+    with closing(computed_ahead(counted(), 2)) as items:
         assert next(items) == 0
-        assert ready.wait(LONG) and begun == [0, 1, 2]
+        wait_until(lambda: len(begun) == 3)
+        sleep(10 * PAUSE)
+        assert begun == [0, 1, 2]
         assert list(items) == list(range(1, 10))
-    assert begun == list(range(10))
 
 
 def test_items_that_are_not_wanted_are_not_begun() -> None:
-    """Closed after the first of two ahead: the others that were begun end, and no more begin."""
+    """Closed after the first while the second is computed: that one ends, and the third and the fourth of three ahead
+    never begin."""
     begun: list[int] = []
-    ready = Event()
-    items = computed_ahead(counted(begun, ready), 2)
-    assert next(items) == 0 and ready.wait(LONG)
+    closing_now = Event()
+
+    def waiting() -> Iterator[int]:
+        for number in range(10):
+            begun.append(number)
+            if number == 1:
+                assert closing_now.wait(LONG)
+                sleep(10 * PAUSE)  # until the others are cancelled
+            yield number
+
+    items = computed_ahead(waiting(), 3)
+    assert next(items) == 0
+    wait_until(lambda: len(begun) == 2)
+    closing_now.set()
     items.close()
-    assert begun == [0, 1, 2]
+    assert begun == [0, 1]
     assert list(items) == []
+
+
+def wait_until(is_so: Callable[[], bool]) -> None:
+    """Waits for what a thread does."""
+    end = monotonic() + LONG
+    while not is_so():
+        assert monotonic() < end
+        sleep(PAUSE)
 
 
 def test_an_error_is_raised_where_its_item_is_asked_for() -> None:

@@ -58,8 +58,8 @@ def test_fields_that_all_spaces_have_are_kept() -> None:
 
 @pytest.mark.parametrize("width", [1.005, 1.02, WIDTH])
 def test_nodes_beyond_a_surface_have_finite_values(width: float) -> None:
-    """Problem: √(1 − x/width), from 1 to 0 at the edge of the surfaces, where it is steep. Right: at nodes beyond the
-    edge no value is more than a few times as large; of the second cell there is a hundredth or less. Without a weight
-    beyond the surfaces there is no solution, or one a thousand times as large."""
+    """Problem: √(1 − x/width), from 1 to 0 at the edge of the surfaces, where it is steep; they have a part of the
+    second cell, or next to none. Right: at nodes beyond the edge no value is more than a few times as large. Without a
+    weight beyond the surfaces there is no solution, or one a thousand times as large."""
     _, (side, _), (fine, _) = projected(width)
     assert np.abs(side @ np.sqrt(np.maximum(1.0 - fine.points[:, 0] / width, 0.0))).max() < 4.0

@@ -15,8 +15,8 @@ from evolvent_meshes.gears.member import Member
 POSITION_PER_DOF, POSITION_PER_LEVEL = 3.5e-3, 1300.0
 """Memory [MB] of corrections and of a position on two ranks: per degree of freedom of both finest flanks, and for each
 level after the first."""
-SHARED, OWN = 0.2, 0.4
-"""Shares of the memory of positions on two ranks: that of all ranks together, and that of each rank."""
+OWN = 0.5
+"""Part of the memory of positions on two ranks that each rank has."""
 PATCH_PER_NODE = {False: 0.88, True: 1.21}
 """Memory [MB] of condensing a patch per node of its flank, without and with the functionals of Nitsche's method, which
 the finest level of the pinion has."""
@@ -34,7 +34,7 @@ def levels_megabytes(sectors: Sequence[LevelledSector], ranks: int) -> float:
     later = max(len(sector.levels) for sector in sectors) - 1
     positions = POSITION_PER_DOF * sum(size.flank for size in sizes) + POSITION_PER_LEVEL * later
     compliances = sum(8e-6 * size.sector.flank**2 for size in sizes)
-    return compliances + max(patches, (SHARED + OWN * ranks) * positions)
+    return compliances + max(patches, OWN * ranks * positions)
 
 
 def _patch_megabytes(sector: LevelledSector, member: Member) -> float:

@@ -69,7 +69,7 @@ def test_section_size_is_that_of_the_mesh(name: str, level: str) -> None:
 
 MEASURED = [
     (yang("mesh.level=quick"), 3300), (yang("mesh.level=standard", ONE_MESH), 11000),
-    (yang("mesh.level=standard", *SHORT, "output.error_bars=false"), 1644), (yang("mesh.level=standard", *SHORT), 1754),
+    (yang("mesh.level=standard", *SHORT, "output.error_bars=false"), 1644), (yang("mesh.level=standard", *SHORT), 1633),
     (yang("mesh.level=fine", *SHORT, "output.error_bars=false"), 1671),
     *((yang(*QUICK, f"mesh.elements_per_contact_width={elements}"), megabytes)
       for elements, megabytes in ((1, 1127), (1.4, 2255), (2, 3844), (2.6, 8420), (3.2, 17063), (3.5, 22401))),

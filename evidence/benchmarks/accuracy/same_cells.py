@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from mpi4py import MPI
 
+from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshing.flank_levels import LevelledSector, levelled_sector
@@ -14,6 +16,8 @@ from evolvent.gears.meshing.levelled_meshes import levelled_mesh
 from evolvent.gears.meshing.sector_meshes import unmodified
 from evolvent.gears.meshing.sector_sizes import finest_cells
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.two_level.flank_cells import FlankCells
+from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.flank_refinement import coarse_body
 from evolvent.gears.two_level_gear import modified_flank
 from evolvent_meshes.gears.member import Member
@@ -32,13 +36,28 @@ def exact_model(problem: GearProblem, levels: GearModel) -> GearModel:
     return replace(levels, bodies=(pinion, wheel))
 
 
+@dataclass(frozen=True, kw_only=True)
+class ExactGear(GearBody):
+    """A gear condensed exactly, on whose flank the contact has cells of its own, as on levels."""
+
+    plain: Surface
+    """Its flank without modifications."""
+
+    @cached_property
+    def cells(self) -> FlankCells:
+        """Facets of the flank by row and layer."""
+        return FlankCells.of(FlankLattice.of(self.plain.points), self.flank, self.gear.base_radius)
+
+
 def exact_gear(problem: GearProblem, member: Member) -> GearBody:
     """Condensed without flank modifications, as the levels are; its flank has them."""
     gear, material = problem.pair.gears[member], problem.materials[member]
     plain = unmodified(gear)
     mesh, carries = split_sector(problem, member), member is Member.PINION
     body = condensed_gear(plain, mesh, material, problem.contact_teeth, member, carries)
-    return replace(body, gear=gear, flank=modified_flank(body.flank, gear))
+    kept = {each.name: getattr(body, each.name) for each in fields(body)}
+    levels, flank = levelled_sector(problem, member).levels, modified_flank(body.flank, gear)
+    return ExactGear(**kept | {"gear": gear, "flank": flank, "levels": levels}, plain=body.flank)
 
 
 def split_sector(problem: GearProblem, member: Member) -> MeshData:

@@ -41,7 +41,7 @@ class ExactGear(GearBody):
     """A gear condensed exactly, on whose flank the contact has cells of its own, as on levels."""
 
     plain: Surface
-    """Its flank without modifications."""
+    """Flank of the gear without modifications."""
 
     @cached_property
     def cells(self) -> FlankCells:

@@ -10,10 +10,10 @@ import numpy as np
 
 from evolvent.fem.surface import Surface
 from evolvent.gears.contact.moved_contact import farthest_moved, nearest_places
-from evolvent.gears.contact.search_window import EXTENSION
+from evolvent.gears.contact.search_window import near_path
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.two_level.flank_cells import FlankCells
-from evolvent_meshes.arrays import Bools, Floats
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
 GROWTH = 0.5
@@ -117,7 +117,7 @@ class ContactLine:
         pinion, wheel = (flank.height for flank in self.flanks)
         low, high = max(pinion[0], wheel[0]), min(pinion[-1], wheel[-1])
         layers = _without_short(pinion[::2][(pinion[::2] > low) & (pinion[::2] < high)], np.array([low, high]))
-        near = self.near_path(layers)
+        near = near_path(self.stand, self.tooth, layers)
         used = near[1:] | near[:-1]
         if not used.any():
             return np.zeros(0)
@@ -127,14 +127,6 @@ class ContactLine:
         ends = np.concatenate([layers[:1], bends, layers[-1:]])
         layers = _without_short(layers[1:-1], ends)
         return np.concatenate([*(self._cells(layers, a, b, long) for a, b in pairwise(ends)), ends[-1:]])
-
-    def near_path(self, z: Floats) -> Bools:
-        """Heights (h,) bool at which the line is on the path of contact, or so near that deflection may keep tip edges
-        in contact."""
-        start, end = self.stand.pair.path_of_contact
-        beyond = EXTENSION * self.stand.pair.pinion.normal_module
-        ξ = self.stand.roll_distance(self.tooth, z)
-        return np.asarray((ξ > start - beyond) & (ξ < end + beyond))
 
     def _bends(self, low: float, high: float) -> Floats:
         """Heights (≤ 2,) between two at which the line of conjugate flanks leaves the path of contact [mm]."""

@@ -14,6 +14,7 @@ from evolvent.fem.reference_facets import area_vector
 from evolvent.fem.surface import Surface
 from evolvent.gears.contact.contact_lattice import ContactLattice
 from evolvent.gears.contact.contact_line import ContactLine
+from evolvent.gears.contact.search_window import near_path
 from evolvent.gears.two_level.flank_cells import FlankCells, FlankPlaces
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
@@ -73,7 +74,7 @@ def with_wheel_edges(line: ContactLine, surfaces: tuple[Surface, Surface]) -> Co
     surfaces: flanks of pinion and wheel in place, or as they were displaced.
     """
     z, own = line.flanks[Member.PINION].height, line.flanks[Member.PINION].arc
-    z = z[line.near_path(z)]
+    z = z[near_path(line.stand, line.tooth, z)]
     if len(z) == 0:
         return line
     edges, away = np.array(line.edges_of_wheel(z)), np.zeros((2, len(z)))  # of the wheel's root and tip

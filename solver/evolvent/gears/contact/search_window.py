@@ -44,14 +44,13 @@ def _near_line(pinion: GearBody, stand: PairRotation, tooth: int, half_width: fl
     every = np.arange(len(pinion.flank.points))
     if np.isinf(half_width):
         return np.ones(len(every), dtype=bool)
-    return (arc_distance(pinion, stand, tooth, every) <= half_width) & _line_within_reach(pinion, stand, tooth)
+    return (arc_distance(pinion, stand, tooth, every) <= half_width) & near_path(stand, tooth, pinion.z)
 
 
-def _line_within_reach(pinion: GearBody, stand: PairRotation, tooth: int) -> Bools:
-    """Flank nodes (n,) bool in slices whose contact line is on the path of contact, or near enough its ends that
-    deflection can bring the tip's edge into contact."""
-    pair = stand.pair
-    start, end = pair.path_of_contact
-    ξ = pair.roll_distance(stand.angle, tooth, pinion.z)
-    beyond = EXTENSION * pair.pinion.normal_module
-    return (ξ > start - beyond) & (ξ < end + beyond)
+def near_path(stand: PairRotation, tooth: int, z: Floats) -> Bools:
+    """Heights z (h,) bool at which the contact line of a tooth pair is on the path of contact, or near enough its ends
+    that deflection can bring the tip's edge into contact."""
+    start, end = stand.pair.path_of_contact
+    ξ = stand.roll_distance(tooth, z)
+    beyond = EXTENSION * stand.pair.pinion.normal_module
+    return np.asarray((ξ > start - beyond) & (ξ < end + beyond))

@@ -13,7 +13,7 @@ from tests.support.meshes.surface_shapes import lattice, rectangle
 
 
 def of_a_rectangle() -> tuple[SurfaceMass, Floats]:
-    """Of some facets of a plane, and the positions of their nodes."""
+    """The mass matrix of some facets of a plane, and the positions of their nodes."""
     surface = lattice(4, 3, "quadrilateral", 2, rectangle((0.0, 0.0), (2.0, 1.5)))
     facets = np.array([0, 1, 2, 3, 4, 5])  # the first two columns: 1 mm × 1.5 mm
     nodes = np.unique(surface.facets[facets])

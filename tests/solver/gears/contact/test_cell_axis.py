@@ -33,7 +33,7 @@ def test_no_axis_out_of_reach() -> None:
 
 
 def test_shape_functions_of_an_interval() -> None:
-    """Those of start, middle and end: 1 at their own node, and they interpolate y²."""
+    """The shape functions of start, middle and end: 1 at their own node, and they interpolate y²."""
     y = np.linspace(0.0, 1.0, 7)
     assert along(np.array([0.0, 0.5, 1.0])) == pytest.approx(np.eye(3), abs=1e-14)
     assert along(y) @ np.array([0.0, 0.25, 1.0]) == pytest.approx(y**2, abs=1e-14)

@@ -20,7 +20,7 @@ LEAVING = 1
 
 
 def overlapping() -> tuple[Surface, Surface]:
-    """Its flanks, the wheel's moved 0.05 mm into the pinion's."""
+    """The flanks of the tooth pair LEAVING, the wheel's moved 0.05 mm into the pinion's."""
     first, second = placed(LEAVING)
     return first, second.moved(np.eye(3), -0.05 * np.asarray(first.normals.mean(axis=0)))
 

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from evolvent.gears.contact.contact_line import ContactLine
 from evolvent_meshes.arrays import Floats, Ints
 
-LONG = 10.0
-"""Length of a cell over its width."""
+STEADY = 0.6
+"""Greatest length of a cell [normal modules]: within it the load along a contact line hardly changes where the gap does
+not."""
+BENT = 0.25
+"""Length of a cell, in its widths, over √(R/ρ), R the radius of curvature of the modifications along the line and ρ the
+relative one across. Where cells are two or three layers long in a relief, line loads there alternate by up to a fifth
+from layer to layer: with cells of ten widths K_Hβ of Yang's pair with reliefs of 60 µm was 1.325 at a twentieth of the
+torque, of one layer 1.230, of this length 1.226."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +37,7 @@ class CellAxis:
     @staticmethod
     def of(line: ContactLine) -> CellAxis | None:
         """The axis of cells as wide as the rows of the pinion's flank; None where the line has left the flanks."""
-        limits = line.cell_limits(LONG)
+        limits = line.cell_limits(partial(cell_length, line))
         if not len(limits):
             return None
         z = _heights(limits)
@@ -56,6 +63,14 @@ class CellAxis:
 def along(y: Floats) -> Floats:
     """Shape functions (q, 3) of a second-order interval at coordinates (q,): of its start, its middle and its end."""
     return np.stack([(1.0 - y) * (1.0 - 2.0 * y), 4.0 * y * (1.0 - y), y * (2.0 * y - 1.0)], axis=1)
+
+
+def cell_length(line: ContactLine, z: Floats) -> Floats:
+    """Length (h,) of cells at heights z [mm]: `STEADY` or, where modifications bend the gap along the line, `BENT`."""
+    pair = line.stand.pair
+    ξ = np.clip(line.stand.roll_distance(line.tooth, z), *pair.path_of_contact)
+    ratio = np.sqrt(np.maximum(line.bend_of_gap(z) * pair.relative_curvature_radius(ξ), np.finfo(float).tiny))
+    return np.asarray(np.minimum(STEADY * pair.pinion.normal_module, BENT * line.row_width(z) / ratio))
 
 
 def _heights(limits: Floats) -> Floats:

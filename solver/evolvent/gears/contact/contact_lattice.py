@@ -2,7 +2,7 @@
 
 Nothing changes along a contact line within a millimetre, and much across it within a tenth of that. Cells of a flank
 have edges along the profile and the face, so that oblique contact lines want nearly square ones. Here the cells are as
-wide as the rows of the flank, and ten times as long, along the line: a third of the nodes.
+wide as the rows of the flank and many times as long, along the line: a third of the nodes.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -9,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from evolvent.fem.surface import Surface
-from evolvent.gears.contact.moved_contact import farthest_moved, nearest_places
+from evolvent.gears.contact.moved_contact import farthest_moved, modified_depth, nearest_places
 from evolvent.gears.contact.search_window import near_path
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.two_level.flank_cells import FlankCells
@@ -111,9 +112,24 @@ class ContactLine:
         inner = layers[(layers > limits[0]) & (layers < limits[-1])]
         return _without_short(inner, limits)
 
-    def cell_limits(self, long: float) -> Floats:
-        """Heights (L + 1,) that limit cells along the line, each about `long` times as long as the rows are wide but no
-        shorter than a layer of the pinion's flank [mm]; empty where the line has left the flanks."""
+    def bend_of_gap(self, z: Floats) -> Floats:
+        """Largest curvature (h,) along the line, over height, of the gap between the undeflected flanks in the layers
+        about heights z [1/mm]: that of their modifications. At a kink it grows with the number of layers."""
+        heights = self.flanks[Member.PINION].height[::2]
+        ξ, arc = self.stand.roll_distance(self.tooth, heights), self.arc(heights)
+        depth = modified_depth(self.stand.pair, ξ, heights, arc - self._arc(Member.PINION, ξ))
+        step = np.diff(heights)
+        bend = np.abs(np.diff(np.diff(depth) / step) / (0.5 * (step[1:] + step[:-1])))
+        bend = np.pad(bend, 2, mode="edge")  # of each limit and one beyond either end
+        layer = np.clip(np.searchsorted(heights, z) - 1, 0, len(step) - 1)
+        return np.max([bend[layer + k] for k in range(4)], axis=0)
+
+    def cell_limits(self, length: Callable[[Floats], Floats]) -> Floats:
+        """Heights (L + 1,) that limit cells along the line [mm]; empty where the line has left the flanks.
+
+        length: of cells at some heights (h,) [mm]; they are no shorter than a layer of the pinion's flank, and shorter
+            where a line ends or turns.
+        """
         pinion, wheel = (flank.height for flank in self.flanks)
         low, high = max(pinion[0], wheel[0]), min(pinion[-1], wheel[-1])
         layers = _without_short(pinion[::2][(pinion[::2] > low) & (pinion[::2] < high)], np.array([low, high]))
@@ -126,7 +142,7 @@ class ContactLine:
         bends = self._bends(layers[0], layers[-1])
         ends = np.concatenate([layers[:1], bends, layers[-1:]])
         layers = _without_short(layers[1:-1], ends)
-        return np.concatenate([*(self._cells(layers, a, b, long) for a, b in pairwise(ends)), ends[-1:]])
+        return np.concatenate([*(self._cells(layers, a, b, length) for a, b in pairwise(ends)), ends[-1:]])
 
     def _bends(self, low: float, high: float) -> Floats:
         """Heights (≤ 2,) between two at which the line of conjugate flanks leaves the path of contact [mm]."""
@@ -138,21 +154,21 @@ class ContactLine:
         least = SHORT * (high - low)
         return found[(found > low + least) & (found < high - least)]
 
-    def _cells(self, layers: Floats, low: float, high: float, long: float) -> Floats:
+    def _cells(self, layers: Floats, low: float, high: float, length: Callable[[Floats], Floats]) -> Floats:
         """Heights from `low` to before `high` that limit cells between limits of layers."""
         here = layers[(layers >= low) & (layers <= high)]
         middle = 0.5 * (here[1:] + here[:-1])
         width, arc = self.row_width(middle), self.arc(here)
         slope = np.diff(arc) / np.diff(here)
         turn = np.pad(np.abs(np.diff(slope)), 1)  # at each limit
-        size = np.diff(here) / (long * width)  # of a layer, in cells
+        size = np.diff(here) / length(middle)  # of a layer, in cells
         size = np.minimum(1.0, size + np.diff(here) * np.maximum(turn[1:], turn[:-1]) / (TURN * width))
         near = np.minimum(np.arange(len(size)), np.arange(len(size))[::-1])
         size = np.maximum(size, 1.0 / (1.0 + GROWTH * near))
         place = np.append(0.0, np.cumsum(size))
-        count = max(1, int(np.round(place[-1])))
-        chosen = np.searchsorted(place, np.linspace(0.0, place[-1], count + 1) - 1e-9)
-        return here[np.unique(chosen)][:-1]
+        count = max(1, int(np.ceil(place[-1] - 1e-9)))  # not fewer, so that those at the ends stay one layer long
+        nearest = np.interp(np.linspace(0.0, place[-1], count + 1), place, np.arange(len(place)))
+        return here[np.unique(np.rint(nearest).astype(int))][:-1]
 
 
 def _without_short(inner: Floats, kept: Floats) -> Floats:

@@ -50,8 +50,15 @@ def nearest_places(pair: GearPair, ξ: Floats, z: Floats, edges: tuple[Floats, F
 
 def _gap(pair: GearPair, ξ: Floats, z: Floats, c: Floats) -> Floats:
     """Distances (h, s) of the flanks at distances c (h, s) from lines with roll distances and heights (h, 1) [mm]."""
-    gap = c**2 / (2.0 * pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
+    conjugate = c**2 / (2.0 * pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
+    return np.asarray(conjugate + modified_depth(pair, ξ, z, c))
+
+
+def modified_depth(pair: GearPair, ξ: Floats, z: Floats, c: Floats) -> Floats:
+    """Depth (…) that modifications of both flanks take away at distances c from lines with roll distances ξ and heights
+    z [mm]."""
+    depth = np.zeros(np.broadcast_shapes(np.shape(ξ), np.shape(z), np.shape(c)))
     for member, gear, pitch_point in zip(Member, pair.gears, pair.pitch_point_roll_lengths):
         arc = (pitch_point + member.sign * ξ) ** 2 / (2.0 * gear.base_radius) + member.sign * c
-        gap += gear.flank_depth.at(np.sqrt(2.0 * gear.base_radius * np.maximum(arc, 0.0)), z)
-    return np.asarray(gap)
+        depth += gear.flank_depth.at(np.sqrt(2.0 * gear.base_radius * np.maximum(arc, 0.0)), z)
+    return depth

@@ -14,7 +14,7 @@ from tests.support.meshes.flanks_in_mesh import TEETH, line
 
 def test_teeth_out_of_reach_have_no_lattice() -> None:
     """A tooth pair three pitches away."""
-    assert not len(line(4).cell_limits(10.0))
+    assert not len(line(4).cell_limits(np.ones_like))
     assert ContactLattice.of(line(4), 1.0) is None
 
 
@@ -45,7 +45,7 @@ def test_points_cover_what_both_flanks_share(tooth: int) -> None:
         low, high = found.edges(at, found.arc(at))
         return float(max(high[0] - low[0], 0.0))
 
-    limits = found.layer_limits(found.cell_limits(10.0))
+    limits = found.layer_limits(found.cell_limits(np.ones_like))
     area = sum(quad(width, a, b)[0] for a, b in pairwise(limits))
     assert lattice.weights.sum() == pytest.approx(area, rel=2e-3)
 

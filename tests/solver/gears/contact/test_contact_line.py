@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from evolvent.gears.contact.search_window import EXTENSION
+from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.gears.member import Member
-from tests.support.meshes.flanks_in_mesh import TEETH, flanks, line, placed
+from evolvent_meshes.gears.pair import GearPair
+from tests.support.meshes.flanks_in_mesh import ANGLE, TEETH, flanks, line, placed
 from tests.support.paper_pairs import yang
 
 
@@ -40,7 +44,7 @@ def test_cells_begin_and_end_with_the_slices_in_reach(tooth: int) -> None:
     """Exact: limits ascend from slices whose line is within EXTENSION modules of the path of contact to the last of
     them, on common layers of the flanks; where the line leaves the path is a limit."""
     pair, found = yang(), line(tooth)
-    limits = found.cell_limits(10.0)
+    limits = found.cell_limits(np.ones_like)
     assert (np.diff(limits) > 0.0).all()
     start, end = pair.path_of_contact
     beyond = EXTENSION * pair.pinion.normal_module
@@ -53,6 +57,29 @@ def test_cells_begin_and_end_with_the_slices_in_reach(tooth: int) -> None:
     bends = (np.array([start, end]) - slope[0]) / (slope[1] - slope[0])
     for bend in bends[(bends > limits[0]) & (bends < limits[-1])]:
         assert np.abs(limits - bend).min() < 1e-9
+
+
+@pytest.mark.parametrize("wanted", [0.5, 1.0, 1.7, 2.0, 3.1])
+def test_cells_are_as_long_as_wanted(wanted: float) -> None:
+    """Problem: cells of some lengths [mm] on the line across the face, whose layers are 0.47 mm high at its ends and
+    0.94 mm in the middle. Exact: no cell is longer than wanted by more than a layer; those at the ends are one layer
+    long; there are fewer than layers where they may be longer than the lowest."""
+    found = line(0)
+    layers = np.diff(found.flanks[0].height[::2])
+    sizes = np.diff(found.cell_limits(lambda z: np.full_like(z, wanted)))
+    assert sizes.max() <= max(wanted, layers.max()) + layers.max()
+    assert sizes[[0, -1]] == pytest.approx(layers[[0, -1]])
+    assert (len(sizes) < len(layers)) == (wanted > 0.5)
+
+
+def test_bend_of_the_gap() -> None:
+    """Problem: flanks without modifications, and a pinion with a lead crowning of 20 µm on a face width b. Exact: none;
+    8 · 20 µm / b² at all heights, as the crown is a parabola along the face."""
+    assert line(0).bend_of_gap(np.linspace(-6.0, 6.0, 5)) == pytest.approx(np.zeros(5), abs=1e-12)
+    pinion = replace(yang().pinion, modifications=replace(yang().pinion.modifications, lead_crowning_um=20.0))
+    crowned = replace(line(0), stand=PairRotation(GearPair(pinion, yang().wheel, yang().centre_distance), ANGLE))
+    exact = 8.0 * 0.020 / pinion.face_width**2
+    assert crowned.bend_of_gap(np.linspace(-6.0, 6.0, 5)) == pytest.approx(np.full(5, exact), rel=1e-6)
 
 
 def test_distance_of_places_that_face_each_other() -> None:

@@ -40,6 +40,24 @@ for frictions in ([0.3], [0.0, 0.1, 0.3]):
 if MPI.COMM_WORLD.rank == 0:
     sys.stdout.write(json.dumps(found))
 """
+FAILING = """
+from mpi4py import MPI
+from evolvent.gears.solution.certified_pitch import certified_pitch
+from evolvent.gears.sweep import parallel_sweep
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from tests.support.gear_cases import helical_scene, model_of
+gears, searched, prepared = model_of(helical_scene()), parallel_sweep.shared_position, []
+def failing(*given, **named):
+    prepared.append(given[1])
+    if len(prepared) == 2:
+        raise ArithmeticError("the second position, as the test wants")
+    return searched(*given, **named)
+parallel_sweep.shared_position = failing
+try:
+    certified_pitch(gears, uniform_pitch(gears.pair.pinion.z, 4), [0.3], MPI.COMM_WORLD)
+except Exception as error:
+    print(f"rank {MPI.COMM_WORLD.rank}: {error}")
+"""
 LEVELS = """
 import json, sys
 from dataclasses import replace
@@ -122,12 +140,23 @@ def test_ranks_agree_where_the_wheel_drives(run_script: RunScript) -> None:
     for the other, and at three, which they divide. Exact: transmission errors and friction powers of one rank, 1e-7;
     friction takes power at each position."""
     found = []
-    for ranks in (1, 2):
+    for ranks in (1, 2, 3):
         done = run_script("-c", WHEEL_DRIVES, ranks=ranks)
         assert done.returncode == 0, done.stderr
         found.append(json.loads(done.stdout))
-    assert found[1] == pytest.approx(found[0], rel=1e-7, abs=1e-7)
+    for each in found[1:]:
+        assert each == pytest.approx(found[0], rel=1e-7, abs=1e-7)
     assert len(found[0]) == 2 * 3 * 4 and min(found[0][1:6:2]) > 0.0
+
+
+@pytest.mark.mpi
+def test_all_ranks_learn_of_an_error_in_the_background(run_script: RunScript) -> None:
+    """Problem: rank 1 fails while it prepares the second position in the background. Exact: both ranks end with an
+    error, that of rank 1 with its message, and none waits for the other."""
+    done = run_script("-c", FAILING, ranks=2)
+    assert done.returncode == 0, done.stderr
+    assert "rank 1: the second position, as the test wants" in done.stdout
+    assert "rank 0: " in done.stdout
 
 
 @pytest.mark.evidence

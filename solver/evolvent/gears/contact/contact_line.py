@@ -115,14 +115,19 @@ class ContactLine:
     def bend_of_gap(self, z: Floats) -> Floats:
         """Largest curvature (h,) along the line, over height, of the gap between the undeflected flanks in the layers
         about heights z [1/mm]: that of their modifications. At a kink it grows with the number of layers."""
-        heights = self.flanks[Member.PINION].height[::2]
-        ξ, arc = self.stand.roll_distance(self.tooth, heights), self.arc(heights)
-        depth = modified_depth(self.stand.pair, ξ, heights, arc - self._arc(Member.PINION, ξ))
-        step = np.diff(heights)
-        bend = np.abs(np.diff(np.diff(depth) / step) / (0.5 * (step[1:] + step[:-1])))
-        bend = np.pad(bend, 2, mode="edge")  # of each limit and one beyond either end
-        layer = np.clip(np.searchsorted(heights, z) - 1, 0, len(step) - 1)
-        return np.max([bend[layer + k] for k in range(4)], axis=0)
+        limits = self.flanks[Member.PINION].height[::2]
+        return np.asarray(self._bend[np.clip(np.searchsorted(limits, z) - 1, 0, len(limits) - 2)])
+
+    @cached_property
+    def _bend(self) -> Floats:
+        """Largest curvature (L,) of the gap at the limits of each layer of the pinion's flank and of its neighbours
+        [1/mm]."""
+        z = self.flanks[Member.PINION].height[::2]
+        ξ, step = self.stand.roll_distance(self.tooth, z), np.diff(z)
+        depth = modified_depth(self.stand.pair, ξ, z, self.arc(z) - self._arc(Member.PINION, ξ))
+        inner = np.abs(np.diff(np.diff(depth) / step) / (0.5 * (step[1:] + step[:-1])))
+        about = np.lib.stride_tricks.sliding_window_view(np.pad(inner, 2, mode="edge"), 4)
+        return np.asarray(about.max(axis=1))
 
     def cell_limits(self, length: Callable[[Floats], Floats]) -> Floats:
         """Heights (L + 1,) that limit cells along the line [mm]; empty where the line has left the flanks.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
@@ -10,9 +9,7 @@ import pytest
 
 from evolvent.gears.contact.cell_axis import CellAxis, along, cell_length
 from evolvent.gears.contact.contact_line import ContactLine
-from evolvent.gears.kinematics import PairRotation
-from evolvent_meshes.gears.pair import GearPair
-from tests.support.meshes.flanks_in_mesh import ANGLE, TEETH, line
+from tests.support.meshes.flanks_in_mesh import TEETH, crowned, line
 from tests.support.paper_pairs import yang
 
 
@@ -43,17 +40,14 @@ def test_no_axis_out_of_reach() -> None:
 def test_length_of_cells(crowning: float) -> None:
     """Problem: rows of 0.1 mm, and a lead crowning of the pinion [µm], curvature κ along the line. Exact: a quarter of
     0.1 mm / √(κ ρ), ρ the relative radius across the line, up to 0.6 modules."""
-    pair = yang()
-    pinion = replace(pair.pinion, modifications=replace(pair.pinion.modifications, lead_crowning_um=crowning))
-    stand = PairRotation(GearPair(pinion, pair.wheel, pair.centre_distance), ANGLE)
-    found, z = replace(line(0), stand=stand), np.zeros(1)
+    pair, found, z = yang(), crowned(crowning), np.zeros(1)
     with patch.object(ContactLine, "row_width", lambda self, z: np.full_like(z, 0.1)):
         length = float(cell_length(found, z)[0])
-    radius = float(pair.relative_curvature_radius(stand.roll_distance(0, z))[0])
-    bend = 8e-3 * crowning / pinion.face_width**2
+    radius = float(pair.relative_curvature_radius(found.stand.roll_distance(0, z))[0])
+    bend = 8e-3 * crowning / pair.pinion.face_width**2
     bent = 0.25 * 0.1 / np.sqrt(bend * radius) if bend else np.inf
-    assert (bent < 0.6 * pinion.normal_module) == (crowning > 0.0)
-    assert length == pytest.approx(min(bent, 0.6 * pinion.normal_module), rel=1e-6)
+    assert (bent < 0.6 * pair.pinion.normal_module) == (crowning > 0.0)
+    assert length == pytest.approx(min(bent, 0.6 * pair.pinion.normal_module), rel=1e-6)
 
 
 def test_shape_functions_of_an_interval() -> None:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from evolvent.gears.contact.search_window import EXTENSION
-from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.gears.pair import GearPair
-from tests.support.meshes.flanks_in_mesh import ANGLE, TEETH, flanks, line, placed
+from tests.support.meshes.flanks_in_mesh import TEETH, crowned, flanks, line, placed
 from tests.support.paper_pairs import yang
 
 
@@ -76,10 +72,8 @@ def test_bend_of_the_gap() -> None:
     """Problem: flanks without modifications, and a pinion with a lead crowning of 20 µm on a face width b. Exact: none;
     8 · 20 µm / b² at all heights, as the crown is a parabola along the face."""
     assert line(0).bend_of_gap(np.linspace(-6.0, 6.0, 5)) == pytest.approx(np.zeros(5), abs=1e-12)
-    pinion = replace(yang().pinion, modifications=replace(yang().pinion.modifications, lead_crowning_um=20.0))
-    crowned = replace(line(0), stand=PairRotation(GearPair(pinion, yang().wheel, yang().centre_distance), ANGLE))
-    exact = 8.0 * 0.020 / pinion.face_width**2
-    assert crowned.bend_of_gap(np.linspace(-6.0, 6.0, 5)) == pytest.approx(np.full(5, exact), rel=1e-6)
+    exact = 8.0 * 0.020 / yang().pinion.face_width**2
+    assert crowned(20.0).bend_of_gap(np.linspace(-6.0, 6.0, 5)) == pytest.approx(np.full(5, exact), rel=1e-6)
 
 
 def test_distance_of_places_that_face_each_other() -> None:

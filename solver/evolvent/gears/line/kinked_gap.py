@@ -26,6 +26,8 @@ SAMPLES, REACH = 65, 2.2
 """Samples of the gap about the vertex, and how far they reach, in half-widths of the flanks without modifications."""
 STEPS, DIFFERENCE = 8, 0.05
 """Newton steps, and the difference for derivatives, in half-widths: the kink is smooth over it."""
+BESIDE = tuple((i, j) for i in (-1, 0, 1) for j in (-1, 0, 1))
+"""Differences in middle and half-width of the intervals from whose means the derivatives are taken."""
 PARTS = (0.0, 0.125, 0.25, 0.5, 1.0)
 """Parts of a Newton step of which that with the least value is taken: over a kink whole ones go to and fro."""
 FLATTEST, NEARLY = 0.1, 0.95
@@ -58,16 +60,16 @@ class SampledGap:
         return SampledGap(middle, spacing, across(places))
 
     def mean(self, middle: Floats, half_width: Floats) -> Floats:
-        """Means Ḡ (k,) [mm] over intervals of middles (k,) and half-widths (k,) [mm], the gap between two samples being
-        a cubic."""
+        """Means Ḡ (..., k) [mm] over intervals of middles (..., k) and half-widths (..., k) [mm], the gap between two
+        samples being a cubic."""
         t = np.cos((np.arange(POINTS) + 0.5) * np.pi / POINTS)
-        at = (middle - self.middle)[:, None] + half_width[:, None] * t
+        at = (middle - self.middle)[..., None] + half_width[..., None] * t
         place = at / self.spacing[:, None] + (SAMPLES - 1) / 2
         i = np.clip(np.floor(place).astype(int), 1, SAMPLES - 3)
-        s, row = place - i, np.arange(len(at))[:, None]
+        s, row = place - i, np.arange(len(self.middle))[:, None]
         before, low, high, after = (self.values[row, i + k] for k in (-1, 0, 1, 2))
         bend = (before - low - high + after) / 4.0  # mean of second differences of both ends
-        return np.asarray((low + s * (high - low) + s * (s - 1.0) * bend).mean(axis=1))
+        return np.asarray((low + s * (high - low) + s * (s - 1.0) * bend).mean(axis=-1))
 
 
 def with_kinks(
@@ -110,14 +112,15 @@ def equal_hertz(gap: SampledGap, half_width: Floats, load: Floats, c: float) -> 
     half_width: b (k,) from which the search starts [mm]; it starts at the middle of the samples.
     load: q (k,) per length [N/mm]. c: 2/(π E*) [1/MPa].
     """
-    m, b, ends = gap.middle, half_width, (-1, 0, 1)
+    m, b, parts = gap.middle, half_width, np.array(PARTS)[:, None]
+    i, j = np.array(BESIDE).T[..., None]
 
     def approach(m: Floats, b: Floats) -> Floats:
         return gap.mean(m, b) - c * load * np.log(b)
 
     for _ in range(STEPS):
         h, unit = DIFFERENCE * b, c * load / b**2
-        Ḡ = {(i, j): gap.mean(m + i * h, b + j * h) for i in ends for j in ends}
+        Ḡ = dict(zip(BESIDE, gap.mean(m + i * h, b + j * h)))
         by_m, by_b = (Ḡ[1, 0] - Ḡ[-1, 0]) / (2.0 * h), (Ḡ[0, 1] - Ḡ[0, -1]) / (2.0 * h) - unit * b
         mm = np.maximum((Ḡ[-1, 0] - 2.0 * Ḡ[0, 0] + Ḡ[1, 0]) / h**2, FLATTEST * unit)
         bb = np.maximum((Ḡ[0, -1] - 2.0 * Ḡ[0, 0] + Ḡ[0, 1]) / h**2, 0.0) + unit
@@ -125,7 +128,7 @@ def equal_hertz(gap: SampledGap, half_width: Floats, load: Floats, c: float) -> 
         mb = np.clip(mb, -NEARLY * np.sqrt(mm * bb), NEARLY * np.sqrt(mm * bb))
         steps = (mb * by_b - bb * by_m) / (mm * bb - mb**2), (mb * by_m - mm * by_b) / (mm * bb - mb**2)
         m_step, b_step = (np.clip(step, -FARTHEST * b, FARTHEST * b) for step in steps)
-        tried = np.array([approach(m + part * m_step, b + part * b_step) for part in PARTS])
+        tried = approach(m + parts * m_step, b + parts * b_step)
         part = np.array(PARTS)[tried.argmin(axis=0)]
         m, b = m + part * m_step, b + part * b_step
     return gap.mean(m, b) - 0.5 * c * load, m, b

@@ -45,7 +45,7 @@ class LineFriction:
 
 def sliding_direction(pair: GearPair, stations: Stations, driving: Member) -> Floats:
     """Direction (p,) of friction at the points of the stations, see `direction_at`."""
-    return direction_at(pair, stations.roll_distance, np.asarray(stations.hats.sum(axis=1)).ravel(), driving)
+    return direction_at(pair, stations.roll_distance, stations.point_lengths, driving)
 
 
 def direction_at(pair: GearPair, roll_distance: Floats, length: Floats, driving: Member) -> Floats:

@@ -107,8 +107,7 @@ class LinePosition:
 
     def at_points(self, load: Floats) -> Floats:
         """Loads per length (p,) at the points [N/mm]. load: (m,) of the stations."""
-        hats = self.stations.hats
-        return np.asarray(hats @ load) / np.asarray(hats.sum(axis=1)).ravel()
+        return np.asarray((self.stations.hats @ load) / self.stations.point_lengths)
 
     def _part(self, load: Floats, points: Bools) -> float:
         force = self.stations.hats @ load

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -50,10 +51,15 @@ class Stations:
     hats: sp.csr_matrix
     """(p, m) hats at the points, times the length of the line that a point stands for [mm; 1 in the plane]."""
 
-    @property
+    @cached_property
     def lengths(self) -> Floats:
         """(m,) integral ℓ of each hat along its line [mm; 1 in the plane]."""
         return np.asarray(self.hats.sum(axis=0)).ravel()
+
+    @cached_property
+    def point_lengths(self) -> Floats:
+        """(p,) length of the line that each point stands for [mm; 1 in the plane]."""
+        return np.asarray(self.hats.sum(axis=1)).ravel()
 
     def mean(self, values: Floats) -> Floats:
         """(m,) mean of values (p,) under each hat."""

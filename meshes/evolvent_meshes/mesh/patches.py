@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from evolvent_meshes.arrays import Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.reference_cells import facet_nodes
 from evolvent_meshes.mesh.structured_grid import boundary_facets
 
 CUT = "cut"
@@ -54,6 +55,7 @@ def _facets_on(outline: Ints, wanted: Ints) -> Ints:
 
 
 def _cut_facets(mesh: MeshData, outline: Ints, nodes: Ints) -> Ints:
-    """The facets of the outline that are inside the body."""
-    whole = boundary_facets(mesh.shape, mesh.order, mesh.cells)
-    return outline[~np.isin(nodes[outline[:, -1]], whole[:, -1])]
+    """The facets of the outline that are inside the body: their last nodes belong to two of its cells."""
+    last = mesh.cells[:, facet_nodes(mesh.shape, mesh.order)[:, -1]]
+    cells = np.bincount(last.ravel(), minlength=len(mesh.points))
+    return outline[cells[nodes[outline[:, -1]]] > 1]

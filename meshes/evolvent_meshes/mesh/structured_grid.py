@@ -101,8 +101,11 @@ def boundary_facets(shape: str, order: int, cells: Ints) -> Ints:
 def _facets_and_counts(shape: str, order: int, cells: Ints) -> tuple[Ints, Ints]:
     local = facet_nodes(shape, order)
     facets = cells[:, local].reshape(-1, local.shape[1])
-    corners = np.sort(facets[:, : corner_count(FACET_SHAPE[shape])], axis=1)
-    _, index, counts = np.unique(corners, axis=0, return_index=True, return_counts=True)
+    if order == 2 and shape in SIMPLEX:  # the node in the middle of a facet is its alone
+        _, index, counts = np.unique(facets[:, -1], return_index=True, return_counts=True)
+    else:
+        corners = np.sort(facets[:, : corner_count(FACET_SHAPE[shape])], axis=1)
+        _, index, counts = np.unique(corners, axis=0, return_index=True, return_counts=True)
     order_of_cells = np.argsort(index)
     return facets[index[order_of_cells]], counts[order_of_cells]
 

@@ -7,9 +7,9 @@ are alike from layer to layer, so is that.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
+from itertools import pairwise
 
 import numpy as np
 
@@ -53,6 +53,14 @@ class Strip:
         """Displacements `change` as (q, p, 3, Q, P, 3)."""
         return self.change.reshape(*self.sources, 3, *self.moved, 3)
 
+    def source_box(self, above: int) -> Ints:
+        """First and last + 1 (level, row) (2, 2) with forces, of the patch so many levels above the first."""
+        return _box(self.source, self.sources, above)
+
+    def moved_box(self, above: int) -> Ints:
+        """The same of the nodes that move."""
+        return _box(self.start, self.moved, above)
+
 
 def _larger(values: Floats, fraction: float) -> slice:
     """Slice from the first to the last value above a fraction of the largest."""
@@ -65,70 +73,68 @@ def symmetric_strips(strips: Sequence[Strip], per_layer: int) -> list[Strip]:
 
     strips: of D; their sources hold each node once. per_layer: levels of nodes from one patch of a strip to the next.
     """
-    patches = _Patches.of(strips, per_layer)
     result = []
-    for _, alike in groupby(range(len(patches.strip)), lambda a: (patches.strip[a], patches.around(a))):
-        layers = list(alike)
-        result.append(patches.symmetric(strips, layers[0], len(layers)))
+    for own in strips:
+        near = _Neighbours.of(own, strips, per_layer)
+        result += [_symmetric(own, layers, near.patches(layers[0]), per_layer) for layers in near.alike()]
     return result
 
 
-@dataclass(frozen=True)
-class _Patches:
-    """All patches of all strips, one strip after the other.
+@dataclass(frozen=True, eq=False)
+class _Neighbours:
+    """The patches that move the sources of each patch of a strip: consecutive ones of each of the strips."""
 
-    strip: (a,) the strip of each.
-    source: (a, 2, 2) first and last + 1 (level, row) with forces.
-    moved: (a, 2, 2) the same of those that move.
-    """
-
-    strip: Ints
-    source: Ints
-    moved: Ints
+    strips: Sequence[Strip]
+    """All strips."""
+    first: Ints
+    """(layers, strips) the first of these patches, by its place in its strip."""
+    end: Ints
+    """(layers, strips) the last one + 1; `first` where there are none."""
 
     @staticmethod
-    def of(strips: Sequence[Strip], per_layer: int) -> _Patches:
-        strip = np.repeat(np.arange(len(strips)), [each.layers for each in strips])
-        up = np.concatenate([per_layer * np.arange(each.layers) for each in strips])
-        shift = np.stack([up, np.zeros_like(up)], axis=1)[:, None]
+    def of(own: Strip, strips: Sequence[Strip], per_layer: int) -> _Neighbours:
+        """The patches about those of one of the strips. per_layer: see `symmetric_strips`."""
+        (level, row), (q, p) = own.source, own.sources
+        start, moved, layers = (np.array([getattr(s, name) for s in strips]) for name in ("start", "moved", "layers"))
+        here = np.arange(own.layers)[:, None]
+        first = np.maximum(0, here + (level - start[:, 0] - moved[:, 0]) // per_layer + 1)
+        end = np.minimum(layers, here - (start[:, 0] - level - q) // per_layer)
+        beside = (start[:, 1] < row + p) & (start[:, 1] + moved[:, 1] > row)
+        return _Neighbours(strips, first, np.where(beside & (first < end), end, first))
 
-        def boxes(first: list[tuple[int, int]], size: list[tuple[int, int]]) -> Ints:
-            low = np.array(first)
-            return np.asarray(np.stack([low, low + np.array(size)], axis=1)[strip] + shift)
+    def alike(self) -> Iterator[range]:
+        """Consecutive patches of the strip about which those of all strips are the same."""
+        count, here = self.end - self.first, np.arange(len(self.first))[:, None]
+        around = np.concatenate([count, np.where(count > 0, self.first - here, 0)], axis=1)
+        changes = np.flatnonzero((around[1:] != around[:-1]).any(axis=1)) + 1
+        yield from (range(a, b) for a, b in pairwise([0, *changes.tolist(), len(here)]))
 
-        source = boxes([each.source for each in strips], [each.sources for each in strips])
-        return _Patches(strip, source, boxes([each.start for each in strips], [each.moved for each in strips]))
+    def patches(self, layer: int) -> Iterator[tuple[Strip, int]]:
+        """Each of the patches about one of the strip: its strip and its place there."""
+        for strip, first, end in zip(self.strips, self.first[layer].tolist(), self.end[layer].tolist()):
+            yield from ((strip, each) for each in range(first, end))
 
-    def moving(self, a: int) -> Ints:
-        """Indices of the patches that move some of the sources of patch a, in the order of their strips."""
-        low = np.maximum(self.moved[:, 0], self.source[a, 0])
-        high = np.minimum(self.moved[:, 1], self.source[a, 1])
-        return np.flatnonzero((low < high).all(axis=1))
 
-    def around(self, a: int) -> tuple[tuple[int, int], ...]:
-        """Strip and levels above patch a of each patch that moves its sources: two patches of a strip for which this is
-        the same are alike."""
-        near = self.moving(a)
-        above = self.source[near, 0, 0] - self.source[a, 0, 0]
-        return tuple(zip(self.strip[near].tolist(), above.tolist()))
+def _symmetric(own: Strip, layers: range, near: Iterable[tuple[Strip, int]], per_layer: int) -> Strip:
+    """Strip ½ (D + Dᵀ) of the forces on some patches of a strip. near: those that move the sources of the first."""
+    moved, source = own.moved_box(layers[0] * per_layer), own.source_box(layers[0] * per_layer)
+    others = [(s.blocks(), s.moved_box(at * per_layer), s.source_box(at * per_layer)) for s, at in near]
+    boxes = np.array([moved, *(each for _, _, each in others)])
+    low, high, first = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0), source[0]
+    change = np.zeros((*own.sources, 3, *(high - low), 3))
+    change[(..., *_part(moved - low), slice(None))] += 0.5 * own.blocks()
+    for blocks, theirs, forces in others:
+        both = np.stack([np.maximum(theirs[0], first), np.minimum(theirs[1], source[1])])
+        here = blocks[(..., *_part(both - theirs[0]), slice(None))]
+        target = change[_part(both - first)][(..., *_part(forces - low), slice(None))]
+        target += 0.5 * np.transpose(here, (3, 4, 5, 0, 1, 2))
+    result = change.reshape(len(own.change), -1).astype(np.float32)
+    return Strip(result, own.sources, _pair(high - low), _pair(first), _pair(low), len(layers))
 
-    def symmetric(self, strips: Sequence[Strip], a: int, layers: int) -> Strip:
-        """Strip ½ (D + Dᵀ) of the forces on patch a, and on those above it that are alike."""
-        near = self.moving(a)
-        boxes = np.concatenate([self.moved[a : a + 1], self.source[near]])
-        low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
-        own, (first, _) = strips[self.strip[a]], self.source[a]
-        change = np.zeros((*own.sources, 3, *(high - low), 3))
-        change[(..., *_part(self.moved[a] - low), slice(None))] += 0.5 * own.blocks()
-        for b in near:
-            both = np.stack([np.maximum(self.moved[b, 0], first), np.minimum(self.moved[b, 1], self.source[a, 1])])
-            here = strips[self.strip[b]].blocks()[(..., *_part(both - self.moved[b, 0]), slice(None))]
-            target = change[_part(both - first)][(..., *_part(self.source[b] - low), slice(None))]
-            target += 0.5 * np.transpose(here, (3, 4, 5, 0, 1, 2))
-        return Strip(
-            change.reshape(len(own.change), -1).astype(np.float32), own.sources, _pair(high - low), _pair(first),
-            _pair(low), layers,
-        )
+
+def _box(first: tuple[int, int], size: tuple[int, int], above: int) -> Ints:
+    low = np.array(first) + [above, 0]
+    return np.stack([low, low + size])
 
 
 def _part(box: Ints) -> tuple[slice, slice]:

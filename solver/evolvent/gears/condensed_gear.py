@@ -18,6 +18,7 @@ from evolvent.contact.nitsche.flux_recovery import (
     nitsche_traction,
     node_functionals,
     trace_functionals,
+    traction_with,
 )
 from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.cache.cache import NOT_KEPT, Cache
@@ -55,8 +56,8 @@ class GearBody:
     """Material of the gear."""
     flank: Surface
     """Loaded flank of tooth 0 in the gear's frame, n nodes."""
-    traction: NitscheTraction | None
-    """Recovered traction of Nitsche's method, on the gear that carries the pressure; else None."""
+    stabiliser: Floats | None
+    """Stabiliser γ and γ_t (n, 2) of Nitsche's method [MPa/mm], on the gear that carries the pressure; else None."""
     chain: Compliance
     """Compliance of the flanks of all teeth in contact, tooth s turned by +2πs/z."""
     member: Member
@@ -78,6 +79,15 @@ class GearBody:
     def condensed_mesh(self) -> MeshData:
         """Mesh that the compliance is of."""
         return self.mesh if self.bare is None else self.bare
+
+    @property
+    def traction(self) -> NitscheTraction | None:
+        """Recovered traction of Nitsche's method, of a gear without levels that carries the pressure, else None;
+        recovered anew, for it takes more memory than the gear."""
+        if self.stabiliser is None:
+            return None
+        mesh = self.condensed_mesh
+        return traction_with(self.stabiliser, mesh, self.material, surface_of(mesh, "flank"))
 
     def lost(self, facets: Ints, xi: Floats) -> Floats:
         """Worn depth (q,) [mm] at xi (q, d−1) of the flank's facets (q,)."""
@@ -162,7 +172,8 @@ def condensed_gear(
         inputs = "sector", mesh_digest(mesh), material.elasticity, settings, own_safety
         chain = cache.kept(f"sector, {in_words(gear)}", inputs, ChainedCompliance, closed_sector)
     end = time.perf_counter()
-    return GearBody(gear, mesh, material, flank, traction, chain, member, assembled - begin, end - assembled)
+    stabiliser = None if traction is None else traction.stabiliser
+    return GearBody(gear, mesh, material, flank, stabiliser, chain, member, assembled - begin, end - assembled)
 
 
 def in_words(gear: GearParameters) -> str:

@@ -61,7 +61,7 @@ class GearModel:
     @property
     def is_line(self) -> bool:
         """Whether the gears are condensed for line contact: neither has the pressure side of Nitsche's method."""
-        return all(body.traction is None for body in self.bodies)
+        return all(body.stabiliser is None for body in self.bodies)
 
     @property
     def base_radius(self) -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evolvent.contact.nitsche.flux_recovery import SAFETY, NitscheTraction, nitsche_traction
+from evolvent.contact.nitsche.flux_recovery import SAFETY, nitsche_stabiliser
 from evolvent.fem.cache.cache import NOT_KEPT, Cache
 from evolvent.fem.material import Material
 from evolvent.fem.parallel.cores import Threads
@@ -24,6 +24,7 @@ from evolvent.gears.two_level.flank_refinement import FlankRefinement, RefinedFl
 from evolvent.gears.two_level.level_patches import Block, BlockResponse, LevelPatches, LoadedPatch
 from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_digest import mesh_digest
@@ -88,8 +89,8 @@ class FlankPatches:
         result: CondensedFlanks = {}
         for count, levels in RefinedFlank(self.levels, by_level).levels(self.counts).items():
             fine, safety = self.levels[count - 1].surface, self.flux_safety
-            traction = None if safety is None else nitsche_traction(fine.mesh, material, fine.surface, safety)
-            result[count] = CondensedFlank(fine.surface, traction, tuple(levels))
+            γ = None if safety is None else nitsche_stabiliser(fine.mesh, material, fine.surface, safety)
+            result[count] = CondensedFlank(fine.surface, γ, tuple(levels))
         return result
 
 
@@ -99,8 +100,8 @@ class CondensedFlank:
 
     surface: Surface
     """Finest of the levels."""
-    traction: NitscheTraction | None
-    """Recovered traction of Nitsche's method, of the pinion; else None."""
+    stabiliser: Floats | None
+    """Stabiliser γ and γ_t (n, 2) of Nitsche's method [MPa/mm], of the pinion; else None."""
     levels: tuple[RefinedLevel, ...]
     """Levels from the coarsest to the finest."""
 
@@ -148,7 +149,7 @@ def corrected_gears(
     assert isinstance(coarse.chain, ChainedCompliance)
     return {
         count: replace(
-            coarse, gear=gear, flank=modified_flank(flank.surface, gear), traction=flank.traction,
+            coarse, gear=gear, flank=modified_flank(flank.surface, gear), stabiliser=flank.stabiliser,
             chain=TwoLevelRing(coarse.chain, coarse.flank, flank.levels, pitch), levels=sector.levels[:count],
             condense_seconds=coarse.condense_seconds + seconds,
         )

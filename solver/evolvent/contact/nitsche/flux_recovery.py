@@ -79,13 +79,23 @@ class NitscheTraction:
 
 def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> NitscheTraction:
     """Recovered traction and stabiliser of a contact surface; safety: γ over the limit of single cells."""
-    cells = _ContactCells.of(mesh, surface)
-    constants = safety * inverse_trace_constants(cells, material)
+    return traction_with(nitsche_stabiliser(mesh, material, surface, safety), mesh, material, surface)
+
+
+def traction_with(stabiliser: Floats, mesh: MeshData, material: Material, surface: Surface) -> NitscheTraction:
+    """Recovered traction of a contact surface whose `nitsche_stabiliser` (n, 2) is known."""
+    recovered = _recovered(_ContactCells.of(mesh, surface), material)
+    return NitscheTraction(surface, tangent_frames(surface.normals), recovered, stabiliser)
+
+
+def nitsche_stabiliser(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> Floats:
+    """Stabiliser γ and γ_t (n, 2) at the nodes of a contact surface [MPa/mm]; safety: γ over the limit of single
+    cells."""
+    constants = safety * inverse_trace_constants(_ContactCells.of(mesh, surface), material)
     stabiliser = np.zeros((len(surface.points), 2))
     for corner in surface.facets.T:
         np.maximum.at(stabiliser, corner, constants)
-    recovered = _recovered(cells, material)
-    return NitscheTraction(surface, tangent_frames(surface.normals), recovered, _harmonic(surface, stabiliser))
+    return _harmonic(surface, stabiliser)
 
 
 def _harmonic(surface: Surface, stabiliser: Floats) -> Floats:

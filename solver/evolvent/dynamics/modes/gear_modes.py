@@ -97,15 +97,15 @@ def gear_modes(
 
     Raises NotPositiveDefinite, OutOfMemory, CompileError, CacheError.
     """
-    sector, traction, to_flank = body.condensed_mesh, body.traction, None
+    sector, γ, to_flank = body.condensed_mesh, body.stabiliser, None
     if mesh is not None:
         # traction-free there: the modes' own flux on a coarse flank is nothing but its error
-        sector, traction, to_flank = mesh, None, FlankLattice.of(surface_of(mesh, "flank").points)
-    stabiliser = "" if traction is None else f"{traction.stabiliser.mean():.6e}"  # whatever the order of its sums
+        sector, γ, to_flank = mesh, None, FlankLattice.of(surface_of(mesh, "flank").points)
+    stabiliser = "" if γ is None else f"{γ.mean():.6e}"  # whatever the order of its sums
     inputs = "modes", mesh_digest(sector), body.material, choice, body.gear.z, stabiliser
     found = Cache.of_environment().kept(
         f"natural modes, {in_words(body.gear)}", inputs, GearModes,
-        lambda: _on_mesh(body, sector, traction, choice, computed),
+        lambda: _on_mesh(body, sector, None if γ is None else body.traction, choice, computed),
     )
     return_free_memory()  # of the factors, gigabytes; time steps want less at once
     if to_flank is None:

@@ -112,7 +112,7 @@ def _on_flank(
 ) -> ToothContact | None:
     """Contact with a jump in the space of the pinion's flank."""
     pinion = bodies[Member.PINION]
-    assert pinion.traction is not None
+    assert pinion.stabiliser is not None
     facets = np.flatnonzero(facets_in_window(pinion, stand, tooth, half_width))
     if len(facets) == 0:
         return None
@@ -121,7 +121,7 @@ def _on_flank(
     pairing = pair_surfaces(first, second, GAP * module, PENETRATION * module, facets)
     if len(pairing.weight) == 0:
         return None
-    operator = contact_operator(pairing, first, second, pinion.traction.stabiliser, tangent_frames(first.normals))
+    operator = contact_operator(pairing, first, second, pinion.stabiliser, tangent_frames(first.normals))
     arc = pinion.roll_length[operator.nodes]**2 / (2.0 * pinion.gear.base_radius)
     distance = operator.hat @ arc_distance(pinion, stand, tooth, operator.nodes)
     edge = _reading_tips(bodies, operator)
@@ -134,7 +134,7 @@ def _on_lattice(
 ) -> ToothContact | None:
     """Contact with a jump on cells that follow the contact line."""
     pinion = bodies[Member.PINION]
-    assert pinion.traction is not None
+    assert pinion.stabiliser is not None
     line = with_wheel_edges(ContactLine((bodies[0].cells, bodies[1].cells), stand, tooth), flanks)
     lattice = ContactLattice.of(line, half_width)
     if lattice is None:
@@ -144,7 +144,7 @@ def _on_lattice(
     if len(pairing.weight) == 0:
         return None
     operator = contact_operator(
-        pairing, *flanks, pinion.traction.stabiliser, tangent_frames(flanks[0].normals),
+        pairing, *flanks, pinion.stabiliser, tangent_frames(flanks[0].normals),
         jumps=jump_space(lattice, flanks[0], kept),
     )
     cell, last = lattice.cell[kept], _in_last_rows(bodies, pairing)

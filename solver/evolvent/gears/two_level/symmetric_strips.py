@@ -7,7 +7,7 @@ are alike from layer to layer, so is that.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -73,34 +73,49 @@ def symmetric_strips(strips: Sequence[Strip], per_layer: int) -> list[Strip]:
 
     strips: of D; their sources hold each node once. per_layer: levels of nodes from one patch of a strip to the next.
     """
-    result = []
+    result, moved = [], _Moved.of(strips)
     for own in strips:
-        near = _Neighbours.of(own, strips, per_layer)
-        result += [_symmetric(own, layers, near.patches(layers[0]), per_layer) for layers in near.alike()]
+        near = moved.about(own, per_layer)
+        for layers in near.alike():
+            others = [(strips[number], layer) for number, layer in near.patches(layers[0])]
+            result.append(_symmetric(own, layers, others, per_layer))
     return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Moved:
+    """What the patches of some strips move."""
+
+    start: Ints
+    """(s, 2) level and row of the first node that the first patch of each strip moves."""
+    size: Ints
+    """(s, 2) levels and rows of nodes that each of its patches moves."""
+    layers: Ints
+    """(s,) its number of patches."""
+
+    @staticmethod
+    def of(strips: Sequence[Strip]) -> _Moved:
+        start, size = (np.array([getattr(each, name) for each in strips]) for name in ("start", "moved"))
+        return _Moved(start, size, np.array([each.layers for each in strips]))
+
+    def about(self, own: Strip, per_layer: int) -> _Neighbours:
+        """The patches that move the sources of each patch of one of the strips. per_layer: see `symmetric_strips`."""
+        (level, row), (q, p) = own.source, own.sources
+        here = np.arange(own.layers)[:, None]
+        first = np.maximum(0, here + (level - self.start[:, 0] - self.size[:, 0]) // per_layer + 1)
+        end = np.minimum(self.layers, here - (self.start[:, 0] - level - q) // per_layer)
+        beside = (self.start[:, 1] < row + p) & (self.start[:, 1] + self.size[:, 1] > row)
+        return _Neighbours(first, np.where(beside & (first < end), end, first))
 
 
 @dataclass(frozen=True, eq=False)
 class _Neighbours:
     """The patches that move the sources of each patch of a strip: consecutive ones of each of the strips."""
 
-    strips: Sequence[Strip]
-    """All strips."""
     first: Ints
     """(layers, strips) the first of these patches, by its place in its strip."""
     end: Ints
     """(layers, strips) the last one + 1; `first` where there are none."""
-
-    @staticmethod
-    def of(own: Strip, strips: Sequence[Strip], per_layer: int) -> _Neighbours:
-        """The patches about those of one of the strips. per_layer: see `symmetric_strips`."""
-        (level, row), (q, p) = own.source, own.sources
-        start, moved, layers = (np.array([getattr(s, name) for s in strips]) for name in ("start", "moved", "layers"))
-        here = np.arange(own.layers)[:, None]
-        first = np.maximum(0, here + (level - start[:, 0] - moved[:, 0]) // per_layer + 1)
-        end = np.minimum(layers, here - (start[:, 0] - level - q) // per_layer)
-        beside = (start[:, 1] < row + p) & (start[:, 1] + moved[:, 1] > row)
-        return _Neighbours(strips, first, np.where(beside & (first < end), end, first))
 
     def alike(self) -> Iterator[range]:
         """Consecutive patches of the strip about which those of all strips are the same."""
@@ -109,13 +124,13 @@ class _Neighbours:
         changes = np.flatnonzero((around[1:] != around[:-1]).any(axis=1)) + 1
         yield from (range(a, b) for a, b in pairwise([0, *changes.tolist(), len(here)]))
 
-    def patches(self, layer: int) -> Iterator[tuple[Strip, int]]:
-        """Each of the patches about one of the strip: its strip and its place there."""
-        for strip, first, end in zip(self.strips, self.first[layer].tolist(), self.end[layer].tolist()):
-            yield from ((strip, each) for each in range(first, end))
+    def patches(self, layer: int) -> Iterator[tuple[int, int]]:
+        """Each of the patches about one of the strip: the number of its strip, and its place there."""
+        for number in np.flatnonzero(self.first[layer] < self.end[layer]).tolist():
+            yield from ((number, each) for each in range(self.first[layer, number], self.end[layer, number]))
 
 
-def _symmetric(own: Strip, layers: range, near: Iterable[tuple[Strip, int]], per_layer: int) -> Strip:
+def _symmetric(own: Strip, layers: range, near: Sequence[tuple[Strip, int]], per_layer: int) -> Strip:
     """Strip ½ (D + Dᵀ) of the forces on some patches of a strip. near: those that move the sources of the first."""
     moved, source = own.moved_box(layers[0] * per_layer), own.source_box(layers[0] * per_layer)
     others = [(s.blocks(), s.moved_box(at * per_layer), s.source_box(at * per_layer)) for s, at in near]
@@ -133,7 +148,7 @@ def _symmetric(own: Strip, layers: range, near: Iterable[tuple[Strip, int]], per
 
 
 def _box(first: tuple[int, int], size: tuple[int, int], above: int) -> Ints:
-    low = np.array(first) + [above, 0]
+    low = np.array([first[0] + above, first[1]])
     return np.stack([low, low + size])
 
 

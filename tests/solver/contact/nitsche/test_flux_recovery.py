@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
 from evolvent import Body, Fixed, Material, MeshData
+from evolvent.contact.nitsche import flux_recovery
 from evolvent.contact.nitsche.flux_recovery import SAFETY, nitsche_traction
 from evolvent.fem.body import assemble
 from evolvent.fem.condensation.schur_complement import Factor, NotPositiveDefinite
@@ -54,6 +57,31 @@ def test_inverse_trace_constant_of_a_square(order: int, poisson: float, wanted: 
     mesh = rectangle(1.0, 1.0, 4, 4, order)
     constants = nitsche_traction(mesh, Material(1.0, poisson), surface_of(mesh, "top"), safety=1.0).stabiliser
     assert constants[:, 0] * 0.25 == pytest.approx(wanted, rel=0.02)
+
+
+def test_congruent_cells_share_their_constants(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A block of 3 × 5 × 2 graded cells whose layers turn as along a screw: constants are computed for 9 of its 15
+    contact cells, 3 in each layer at an end, where the normals of the nodes are means of fewer facets, and 3 in all
+    layers between; stabilisers are those of all cells by themselves to 1e-12."""
+    computed: list[int] = []
+    alone = flux_recovery._trace_constants
+
+    def counted(cells: flux_recovery._ContactCells, material: Material) -> Floats:
+        computed.append(len(cells.nodes))
+        return alone(cells, material)
+
+    monkeypatch.setattr(flux_recovery, "_trace_constants", counted)
+    straight = box((3.0, 5.0, 1.0), (3, 5, 2), 2, "hexahedron")
+    x, y, z = straight.points.T
+    x = x + 0.1 * x**2
+    c, s = np.cos(0.1 * y), np.sin(0.1 * y)
+    mesh = replace(straight, points=np.stack([c * x + s * (z + 5.0), y, c * (z + 5.0) - s * x], axis=1))
+    top = surface_of(mesh, "top")
+    shared = flux_recovery.nitsche_stabiliser(mesh, Material(210e3, 0.3), top)
+    assert sum(computed) == 9
+    monkeypatch.setattr(flux_recovery, "CONGRUENT", 1e-15)
+    assert shared == pytest.approx(flux_recovery.nitsche_stabiliser(mesh, Material(210e3, 0.3), top), rel=1e-12)
+    assert sum(computed) == 9 + 15
 
 
 def _modified(mesh: MeshData, safety: float) -> sp.csr_matrix:

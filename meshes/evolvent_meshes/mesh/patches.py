@@ -35,7 +35,8 @@ def cells_near(mesh: MeshData, nodes: Ints, reach: float) -> Ints:
 
 
 def cut_out(mesh: MeshData, cells: Ints) -> Patch:
-    """Patch of some cells (n,) of a mesh. The patch of a patch keeps the group CUT where it lies on that."""
+    """Patch of some cells (n,) of a mesh of second-order quadrilaterals or hexahedra, whose facets have a node each
+    that belongs to them alone. The patch of a patch keeps the group CUT where it lies on that."""
     nodes, numbers = np.unique(mesh.cells[cells], return_inverse=True)
     place = np.full(len(mesh.points), -1)
     place[nodes] = np.arange(len(nodes))
@@ -57,5 +58,5 @@ def _facets_on(outline: Ints, wanted: Ints) -> Ints:
 def _cut_facets(mesh: MeshData, outline: Ints, nodes: Ints) -> Ints:
     """The facets of the outline that are inside the body: their last nodes belong to two of its cells."""
     last = mesh.cells[:, facet_nodes(mesh.shape, mesh.order)[:, -1]]
-    cells = np.bincount(last.ravel(), minlength=len(mesh.points))
-    return outline[cells[nodes[outline[:, -1]]] > 1]
+    counts = np.bincount(last.ravel(), minlength=len(mesh.points))
+    return outline[counts[nodes[outline[:, -1]]] > 1]

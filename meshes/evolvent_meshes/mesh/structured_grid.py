@@ -101,7 +101,7 @@ def boundary_facets(shape: str, order: int, cells: Ints) -> Ints:
 def _facets_and_counts(shape: str, order: int, cells: Ints) -> tuple[Ints, Ints]:
     local = facet_nodes(shape, order)
     facets = cells[:, local].reshape(-1, local.shape[1])
-    if order == 2 and shape in SIMPLEX:  # the node in the middle of a facet is its alone
+    if order == 2 and FACET_SHAPE[shape] != "triangle":  # the node in the middle of a facet belongs to it alone
         _, index, counts = np.unique(facets[:, -1], return_index=True, return_counts=True)
     else:
         corners = np.sort(facets[:, : corner_count(FACET_SHAPE[shape])], axis=1)

@@ -15,10 +15,10 @@ from scipy.spatial import cKDTree
 from evolvent.contact.nitsche.flux_recovery import (
     SAFETY,
     NitscheTraction,
-    nitsche_traction,
+    nitsche_stabiliser,
     node_functionals,
+    recovered_traction,
     trace_functionals,
-    traction_with,
 )
 from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.cache.cache import NOT_KEPT, Cache
@@ -82,12 +82,13 @@ class GearBody:
 
     @property
     def traction(self) -> NitscheTraction | None:
-        """Recovered traction of Nitsche's method, of a gear without levels that carries the pressure, else None;
-        recovered anew, for it takes more memory than the gear."""
+        """Recovered traction of Nitsche's method, of a gear that carries the pressure and whose flank is the mesh's;
+        None of one without pressure. Recovered at each call: only modes and deformation fields need it."""
         if self.stabiliser is None:
             return None
-        mesh = self.condensed_mesh
-        return traction_with(self.stabiliser, mesh, self.material, surface_of(mesh, "flank"))
+        flank = surface_of(self.condensed_mesh, "flank")
+        assert len(flank.points) == len(self.stabiliser)  # finer flanks have no traction on the mesh
+        return recovered_traction(self.stabiliser, self.condensed_mesh, self.material, flank)
 
     def lost(self, facets: Ints, xi: Floats) -> Floats:
         """Worn depth (q,) [mm] at xi (q, d−1) of the flank's facets (q,)."""
@@ -151,14 +152,15 @@ def condensed_gear(
     flank, pitch = surface_of(mesh, "flank"), 2.0 * np.pi / gear.z
     numbers = sorted(member.sign * tooth for tooth in teeth)
     own_safety = safety if carries_pressure else None
-    traction = None if own_safety is None else nitsche_traction(mesh, material, flank, own_safety)
+    γ = None if own_safety is None else nitsche_stabiliser(mesh, material, flank, own_safety)
 
     def closed_sector() -> ChainedCompliance:
         nonlocal assembled
+        traction = None if γ is None else recovered_traction(γ, mesh, material, flank)
         system = _sector_system(sector_body(mesh, material, member), flank, traction, pitch)
         assembled = time.perf_counter()
         sector = system.condensed(threads)
-        del system  # gigabytes at the fine end
+        del system, traction  # gigabytes at the fine end
         return ChainedCompliance.of(sector, settings)
 
     if whole:
@@ -172,8 +174,7 @@ def condensed_gear(
         inputs = "sector", mesh_digest(mesh), material.elasticity, settings, own_safety
         chain = cache.kept(f"sector, {in_words(gear)}", inputs, ChainedCompliance, closed_sector)
     end = time.perf_counter()
-    stabiliser = None if traction is None else traction.stabiliser
-    return GearBody(gear, mesh, material, flank, stabiliser, chain, member, assembled - begin, end - assembled)
+    return GearBody(gear, mesh, material, flank, γ, chain, member, assembled - begin, end - assembled)
 
 
 def in_words(gear: GearParameters) -> str:

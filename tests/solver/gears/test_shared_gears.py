@@ -61,7 +61,7 @@ def test_each_torque_has_the_gears_that_it_would_have_alone() -> None:
         alone = prepare_model(problem, MPI.COMM_SELF, few_cells).model
         assert found.model.load == alone.load and found.model.half_width == alone.half_width
         for own, other in zip(found.model.bodies, alone.bodies):
-            assert own.levels == other.levels and (own.traction is None) == (other.traction is None)
+            assert own.levels == other.levels and (own.stabiliser is None) == (other.stabiliser is None)
             rows = own.rows(0, np.arange(len(own.flank.points)))
             force = np.random.default_rng(0).normal(size=(len(rows), 3))
             moved, wanted = (body.chain.apply(rows, force, rows) for body in (own, other))

@@ -33,7 +33,7 @@ SAFETY = 2.0
 """Stabiliser γ over the limit C of single cells. With γ averaged between cells up to 1.18 is needed; results hardly
 change up to 50."""
 CONGRUENT = 1e-7
-"""Difference of lengths, over the size of the smallest cell, up to which two cells are congruent."""
+"""Step to which lengths are rounded before cells are compared, over the longest length in the smallest cell."""
 AT_ONCE = 64
 """Cells whose stiffness is held at a time: of 3,500 at once it would be 0.6 GB, whose pages took half of the time."""
 
@@ -83,18 +83,18 @@ class NitscheTraction:
 
 def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> NitscheTraction:
     """Recovered traction and stabiliser of a contact surface; safety: γ over the limit of single cells."""
-    return traction_with(nitsche_stabiliser(mesh, material, surface, safety), mesh, material, surface)
+    return recovered_traction(nitsche_stabiliser(mesh, material, surface, safety), mesh, material, surface)
 
 
-def traction_with(stabiliser: Floats, mesh: MeshData, material: Material, surface: Surface) -> NitscheTraction:
+def recovered_traction(stabiliser: Floats, mesh: MeshData, material: Material, surface: Surface) -> NitscheTraction:
     """Recovered traction of a contact surface whose `nitsche_stabiliser` (n, 2) is known."""
     recovered = _recovered(_ContactCells.of(mesh, surface), material)
     return NitscheTraction(surface, tangent_frames(surface.normals), recovered, stabiliser)
 
 
 def nitsche_stabiliser(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> Floats:
-    """Stabiliser γ and γ_t (n, 2) at the nodes of a contact surface [MPa/mm]; safety: γ over the limit of single
-    cells."""
+    """Stabiliser γ and γ_t (n, 2) at the nodes of a contact surface of this mesh [MPa/mm]; safety: γ over the limit of
+    single cells."""
     constants = safety * inverse_trace_constants(_ContactCells.of(mesh, surface), material)
     stabiliser = np.zeros((len(surface.points), 2))
     for corner in surface.facets.T:
@@ -158,9 +158,9 @@ class _ContactCells:
         return _ContactCells(self.mesh, surface, self.nodes[cells], self.coordinates[cells], self.slots[cells])
 
     def congruent(self) -> tuple[Ints, Ints]:
-        """One cell of each shape and size (m,), and that (f,), by its place among them, which each cell is like: with
-        the same distances of its nodes from its corners, and of the normals at its facet from these. Such a cell has
-        the same constants, wherever it is in a flank that is swept along a screw."""
+        """First cell (m,) of each group of congruent cells, and the group (f,) of each cell. Congruent cells have equal
+        distances between nodes and corners, and equal normals relative to these, so equal constants: on a flank that is
+        swept along a screw, all layers but those at its ends."""
         corners = self.coordinates[:, : corner_count(self.mesh.shape)]
         normals = self.surface.normals[self.surface.facets]
         apart = np.linalg.norm(self.coordinates[:, :, None] - corners[:, None], axis=3)
@@ -170,8 +170,9 @@ class _ContactCells:
         lengths = np.concatenate([apart, leaning], axis=1).reshape(len(size), -1)
         keys = np.hstack([self.slots, np.rint(lengths / (CONGRUENT * size.min())).astype(np.int64)])
         known: dict[bytes, int] = {}
-        like = np.array([known.setdefault(key.tobytes(), len(known)) for key in keys], dtype=np.int64)
-        return np.unique(like, return_index=True)[1], like
+        like = [known.setdefault(key.tobytes(), i) for i, key in enumerate(keys)]
+        first, group = np.unique(like, return_inverse=True)
+        return first, group.ravel()
 
     def gradients(self, xi: Floats) -> tuple[Floats, Floats]:
         """Shape function gradients ∇N (f, q, k, d) [1/mm] and det J (f, q) at the reference points xi (q, d)."""
@@ -204,9 +205,9 @@ def _recovered(cells: _ContactCells, material: Material) -> sp.csr_matrix:
 
 def inverse_trace_constants(cells: _ContactCells, material: Material) -> Floats:
     """Constants C_n and C_t of the inverse trace inequality of each contact cell, (f, 2) [MPa/mm]."""
-    first, like = cells.congruent()
-    parts = np.array_split(first, max(1, math.ceil(len(first) / AT_ONCE)))
-    return np.concatenate([_trace_constants(cells.part(part), material) for part in parts])[like]
+    first, group = cells.congruent()
+    parts = np.array_split(first, math.ceil(len(first) / AT_ONCE))
+    return np.concatenate([_trace_constants(cells.part(part), material) for part in parts])[group]
 
 
 def _trace_constants(cells: _ContactCells, material: Material) -> Floats:

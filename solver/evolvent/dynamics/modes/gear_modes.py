@@ -101,11 +101,11 @@ def gear_modes(
     if mesh is not None:
         # traction-free there: the modes' own flux on a coarse flank is nothing but its error
         sector, γ, to_flank = mesh, None, FlankLattice.of(surface_of(mesh, "flank").points)
-    stabiliser = "" if γ is None else f"{γ.mean():.6e}"  # whatever the order of its sums
-    inputs = "modes", mesh_digest(sector), body.material, choice, body.gear.z, stabiliser
+    mean = "" if γ is None else f"{γ.mean():.6e}"  # whatever the order of its sums
+    inputs = "modes", mesh_digest(sector), body.material, choice, body.gear.z, mean
     found = Cache.of_environment().kept(
         f"natural modes, {in_words(body.gear)}", inputs, GearModes,
-        lambda: _on_mesh(body, sector, None if γ is None else body.traction, choice, computed),
+        lambda: _on_mesh(body, sector, body.traction if mesh is None else None, choice, computed),
     )
     return_free_memory()  # of the factors, gigabytes; time steps want less at once
     if to_flank is None:

@@ -27,7 +27,7 @@ SAMPLES, REACH = 65, 2.2
 STEPS, DIFFERENCE = 8, 0.05
 """Newton steps, and the difference for derivatives, in half-widths: the kink is smooth over it."""
 BESIDE = tuple((i, j) for i in (-1, 0, 1) for j in (-1, 0, 1))
-"""Differences in middle and half-width of the intervals from whose means the derivatives are taken."""
+"""Differences in middle and half-width of the intervals whose means make the derivatives, in steps of `DIFFERENCE`."""
 PARTS = (0.0, 0.125, 0.25, 0.5, 1.0)
 """Parts of a Newton step of which that with the least value is taken: over a kink whole ones go to and fro."""
 FLATTEST, NEARLY = 0.1, 0.95
@@ -129,6 +129,6 @@ def equal_hertz(gap: SampledGap, half_width: Floats, load: Floats, c: float) -> 
         steps = (mb * by_b - bb * by_m) / (mm * bb - mb**2), (mb * by_m - mm * by_b) / (mm * bb - mb**2)
         m_step, b_step = (np.clip(step, -FARTHEST * b, FARTHEST * b) for step in steps)
         tried = approach(m + parts * m_step, b + parts * b_step)
-        part = np.array(PARTS)[tried.argmin(axis=0)]
+        part = parts[tried.argmin(axis=0), 0]
         m, b = m + part * m_step, b + part * b_step
     return gap.mean(m, b) - 0.5 * c * load, m, b

@@ -133,7 +133,7 @@ def carrying(body: GearBody) -> GearBody:
     """The gear with the flank that carries loads per length: that of its coarse sector, where it has levels."""
     if not isinstance(body.chain, TwoLevelRing):
         return body
-    return replace(body, chain=body.chain.coarse, flank=body.chain.flank)
+    return replace(body, chain=body.chain.coarse, flank=body.chain.flank, stabiliser=None)
 
 
 def _carries(body: GearBody) -> bool:

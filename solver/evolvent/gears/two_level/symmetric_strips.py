@@ -26,7 +26,7 @@ class Strip:
     moved: (Q, P).
     source: level and row of the first node with forces, at the first layer.
     start: level and row of the first node that moves, at the first layer.
-    layers: number of patches.
+    layers: number of patches, at least 1.
     """
 
     change: Reals
@@ -84,7 +84,7 @@ def symmetric_strips(strips: Sequence[Strip], per_layer: int) -> list[Strip]:
 
 @dataclass(frozen=True, eq=False)
 class _Moved:
-    """What the patches of some strips move."""
+    """Nodes that the patches of each strip move."""
 
     start: Ints
     """(s, 2) level and row of the first node that the first patch of each strip moves."""
@@ -95,7 +95,7 @@ class _Moved:
 
     @staticmethod
     def of(strips: Sequence[Strip]) -> _Moved:
-        start, size = (np.array([getattr(each, name) for each in strips]) for name in ("start", "moved"))
+        start, size = np.array([each.start for each in strips]), np.array([each.moved for each in strips])
         return _Moved(start, size, np.array([each.layers for each in strips]))
 
     def about(self, own: Strip, per_layer: int) -> _Neighbours:
@@ -105,7 +105,7 @@ class _Moved:
         first = np.maximum(0, here + (level - self.start[:, 0] - self.size[:, 0]) // per_layer + 1)
         end = np.minimum(self.layers, here - (self.start[:, 0] - level - q) // per_layer)
         beside = (self.start[:, 1] < row + p) & (self.start[:, 1] + self.size[:, 1] > row)
-        return _Neighbours(first, np.where(beside & (first < end), end, first))
+        return _Neighbours(first, np.where(beside, np.maximum(end - first, 0), 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,20 +114,21 @@ class _Neighbours:
 
     first: Ints
     """(layers, strips) the first of these patches, by its place in its strip."""
-    end: Ints
-    """(layers, strips) the last one + 1; `first` where there are none."""
+    count: Ints
+    """(layers, strips) their number."""
 
     def alike(self) -> Iterator[range]:
-        """Consecutive patches of the strip about which those of all strips are the same."""
-        count, here = self.end - self.first, np.arange(len(self.first))[:, None]
-        around = np.concatenate([count, np.where(count > 0, self.first - here, 0)], axis=1)
+        """Ranges of consecutive patches whose neighbours are at the same distances."""
+        here = np.arange(len(self.first))[:, None]
+        around = np.concatenate([self.count, np.where(self.count > 0, self.first - here, 0)], axis=1)
         changes = np.flatnonzero((around[1:] != around[:-1]).any(axis=1)) + 1
         yield from (range(a, b) for a, b in pairwise([0, *changes.tolist(), len(here)]))
 
     def patches(self, layer: int) -> Iterator[tuple[int, int]]:
-        """Each of the patches about one of the strip: the number of its strip, and its place there."""
-        for number in np.flatnonzero(self.first[layer] < self.end[layer]).tolist():
-            yield from ((number, each) for each in range(self.first[layer, number], self.end[layer, number]))
+        """Number of the strip and place there of each neighbour of a patch."""
+        for number in np.flatnonzero(self.count[layer]).tolist():
+            first = int(self.first[layer, number])
+            yield from ((number, each) for each in range(first, first + int(self.count[layer, number])))
 
 
 def _symmetric(own: Strip, layers: range, near: Sequence[tuple[Strip, int]], per_layer: int) -> Strip:

@@ -42,7 +42,7 @@ def three(kind: str, member: Member) -> GearModes:
 def whole(body: GearBody, count: int) -> tuple[Floats, Floats]:
     """ω, and the flank functionals of tooth 0 and 1, of the modes of all sectors."""
     mesh = whole_mesh(body.mesh, matching_cuts(body.mesh, 2.0 * np.pi / body.gear.z), body.gear.z)
-    safety = 2.0 if body.traction is not None else None
+    safety = 2.0 if body.stabiliser is not None else None
     system = whole_system(mesh, body.material, body.gear.z, range(2), safety)
     free = system.free
     M = mass_matrix(Body(mesh, body.material, supports=(Fixed("bore"),)))[free][:, free]

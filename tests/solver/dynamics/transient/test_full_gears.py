@@ -120,7 +120,7 @@ class WholeGear:
     def __init__(self, body: GearBody) -> None:
         z, d = body.gear.z, body.d
         mesh = whole_mesh(body.mesh, matching_cuts(body.mesh, 2.0 * np.pi / z), z)
-        system = whole_system(mesh, body.material, z, range(z), SAFETY if body.traction is not None else None)
+        system = whole_system(mesh, body.material, z, range(z), SAFETY if body.stabiliser is not None else None)
         free, M = system.free, mass_matrix(Body(mesh, body.material))
         r = spin(mesh.points[:, :d], np.zeros(d)).ravel()
         self.member, self.z, self.d, self.nodes = body.member, z, d, len(body.flank.points)

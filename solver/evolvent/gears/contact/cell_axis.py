@@ -13,7 +13,7 @@ from evolvent_meshes.arrays import Floats, Ints
 STEADY = 0.6
 """Greatest length of a cell [normal modules]: within it the load along a contact line hardly changes where the gap does
 not."""
-BENT = 0.25
+BENT = 0.125
 """Length of a cell, in its widths, over √(R/ρ), R the radius of curvature of the modifications along the line and ρ the
 relative one across. Where cells are two or three layers long in a relief, line loads there alternate by up to a fifth
 from layer to layer: with cells of ten widths K_Hβ of Yang's pair with reliefs of 60 µm was 1.325 at a twentieth of the

@@ -20,6 +20,9 @@ from evolvent_meshes.gears.member import Member
 GROWTH = 0.5
 """Growth of cells towards the middle of a line: at its ends, where the load falls within a few layers, they are as long
 as a layer."""
+BESIDE = (-3.0, -1.5, 0.0, 1.5, 3.0)
+"""Distances from the line, in widths of a row, at which the gap is looked at along it: a contact is up to so wide, and
+where a relief starts in it, it bends the gap beside the line before it does on it."""
 TURN = 0.5
 """How far, in widths of a row, the line may turn aside from a straight one over a cell."""
 SHORT = 1e-3
@@ -120,12 +123,13 @@ class ContactLine:
 
     @cached_property
     def _bend(self) -> Floats:
-        """Largest curvature (L,) of the gap at the limits of each layer of the pinion's flank and of its neighbours
-        [1/mm]."""
+        """Largest curvature (L,) of the gap, on the line and `BESIDE` it, at the limits of each layer of the pinion's
+        flank and of its neighbours [1/mm]."""
         z = self.flanks[Member.PINION].height[::2]
         ξ, step = self.stand.roll_distance(self.tooth, z), np.diff(z)
-        depth = modified_depth(self.stand.pair, ξ, z, self.arc(z) - self._arc(Member.PINION, ξ))
-        inner = np.abs(np.diff(np.diff(depth) / step) / (0.5 * (step[1:] + step[:-1])))
+        beside = np.array(BESIDE)[:, None] * self.row_width(z)
+        depth = modified_depth(self.stand.pair, ξ, z, self.arc(z) - self._arc(Member.PINION, ξ) + beside)
+        inner = np.abs(np.diff(np.diff(depth) / step) / (0.5 * (step[1:] + step[:-1]))).max(axis=0)
         about = np.lib.stride_tricks.sliding_window_view(np.pad(inner, 2, mode="edge"), 4)
         return np.asarray(about.max(axis=1))
 

@@ -45,7 +45,7 @@ def test_length_of_cells(crowning: float) -> None:
         length = float(cell_length(found, z)[0])
     radius = float(pair.relative_curvature_radius(found.stand.roll_distance(0, z))[0])
     bend = 8e-3 * crowning / pair.pinion.face_width**2
-    bent = 0.25 * 0.1 / np.sqrt(bend * radius) if bend else np.inf
+    bent = 0.125 * 0.1 / np.sqrt(bend * radius) if bend else np.inf
     assert (bent < 0.6 * pair.pinion.normal_module) == (crowning > 0.0)
     assert length == pytest.approx(min(bent, 0.6 * pair.pinion.normal_module), rel=1e-6)
 

@@ -11,7 +11,7 @@ from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.two_level.flank_cells import FlankCells
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.sector.section import SectorResolution
 from evolvent_meshes.sector.sector import sector_mesh
 from tests.support.meshes.sector_cases import gear_and_start
@@ -41,11 +41,14 @@ def line(tooth: int) -> ContactLine:
     return ContactLine(flanks()[1], PairRotation(yang(), ANGLE), tooth)
 
 
+def modified(pinion: Modifications) -> ContactLine:
+    """The contact line across the flanks with modifications of the pinion."""
+    return replace(line(0), stand=PairRotation(yang(pinion), ANGLE))
+
+
 def crowned(crowning_um: float) -> ContactLine:
     """The contact line across the flanks with a lead crowning of the pinion."""
-    pair = yang()
-    pinion = replace(pair.pinion, modifications=replace(pair.pinion.modifications, lead_crowning_um=crowning_um))
-    return replace(line(0), stand=PairRotation(GearPair(pinion, pair.wheel, pair.centre_distance), ANGLE))
+    return modified(Modifications(lead_crowning_um=crowning_um))
 
 
 @cache

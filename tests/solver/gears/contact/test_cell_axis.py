@@ -38,7 +38,7 @@ def test_no_axis_out_of_reach() -> None:
 
 @pytest.mark.parametrize("crowning", [0.0, 4.0, 40.0])
 def test_length_of_cells(crowning: float) -> None:
-    """Problem: rows of 0.1 mm, and a lead crowning of the pinion [µm], curvature κ along the line. Exact: a quarter of
+    """Problem: rows of 0.1 mm, and a lead crowning of the pinion [µm], curvature κ along the line. Exact: an eighth of
     0.1 mm / √(κ ρ), ρ the relative radius across the line, up to 0.6 modules."""
     pair, found, z = yang(), crowned(crowning), np.zeros(1)
     with patch.object(ContactLine, "row_width", lambda self, z: np.full_like(z, 0.1)):

@@ -7,7 +7,8 @@ import pytest
 
 from evolvent.gears.contact.search_window import EXTENSION
 from evolvent_meshes.gears.member import Member
-from tests.support.meshes.flanks_in_mesh import TEETH, crowned, flanks, line, placed
+from evolvent_meshes.gears.modifications.modifications import Modifications
+from tests.support.meshes.flanks_in_mesh import TEETH, crowned, flanks, line, modified, placed
 from tests.support.paper_pairs import yang
 
 
@@ -74,6 +75,20 @@ def test_bend_of_the_gap() -> None:
     assert line(0).bend_of_gap(np.linspace(-6.0, 6.0, 5)) == pytest.approx(np.zeros(5), abs=1e-12)
     exact = 8.0 * 0.020 / yang().pinion.face_width**2
     assert crowned(20.0).bend_of_gap(np.linspace(-6.0, 6.0, 5)) == pytest.approx(np.full(5, exact), rel=1e-6)
+
+
+def test_relief_that_starts_beside_the_line_bends_the_gap() -> None:
+    """Problem: a linear tip relief of the pinion, whose start the line crosses. Exact: where it starts within three
+    rows of the line it bends the gap; where it starts more than nine rows beside it, nothing does."""
+    found = modified(
+        Modifications(tip_relief_um=40.0, tip_relief_start_diameter=44.0, tip_relief_parabolic=False)
+    )
+    layers, base_radius = found.flanks[0].height[::2], yang().pinion.base_radius
+    z = 0.5 * (layers[1:] + layers[:-1])
+    away = (found.arc(z) - (22.0**2 - base_radius**2) / (2.0 * base_radius)) / found.row_width(z)
+    bend = found.bend_of_gap(z)
+    assert (np.abs(away) < 3.0).sum() > 5 and (bend[np.abs(away) < 3.0] > 5e-3).all()
+    assert (away < -9.0).sum() > 5 and np.abs(bend[away < -9.0]).max() < 1e-12
 
 
 def test_distance_of_places_that_face_each_other() -> None:

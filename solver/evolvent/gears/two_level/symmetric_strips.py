@@ -58,7 +58,7 @@ class Strip:
         return _box(self.source, self.sources, above)
 
     def moved_box(self, above: int) -> Ints:
-        """First and last + 1 (level, row) (2, 2) of the nodes that move, of the patch so many levels above the first."""
+        """First and last + 1 (level, row) (2, 2) of nodes that move, of the patch so many levels above the first."""
         return _box(self.start, self.moved, above)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -79,6 +79,14 @@ class GearBody:
     def condensed_mesh(self) -> MeshData:
         """Mesh that the compliance is of."""
         return self.mesh if self.bare is None else self.bare
+
+    @property
+    def coarse(self) -> GearBody:
+        """The gear with the flank of its coarse sector, without the pressure side of Nitsche's method; itself where its
+        flank has no levels."""
+        if not isinstance(self.chain, TwoLevelRing):
+            return self
+        return replace(self, flank=self.chain.flank, stabiliser=None, chain=self.chain.coarse, levels=())
 
     @property
     def traction(self) -> NitscheTraction | None:

@@ -23,7 +23,6 @@ from evolvent.gears.line.line_gears import MOST_ON_EDGES, LineGears
 from evolvent.gears.line.line_result import LineResult, TooWide
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
-from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.gears.unloaded_error import RigidFlanks
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
@@ -117,7 +116,7 @@ class LineStarts:
 
     @cached_property
     def _compliances(self) -> tuple[FlankCompliance, FlankCompliance]:
-        pinion, wheel = (FlankCompliance.of(carrying(body)) for body in self._bodies)
+        pinion, wheel = (FlankCompliance.of(body.coarse) for body in self._bodies)
         return pinion, wheel
 
 
@@ -129,14 +128,7 @@ def with_line_starts(model: GearModel) -> GearModel:
     return replace(model, starts=LineStarts(model.bodies))
 
 
-def carrying(body: GearBody) -> GearBody:
-    """The gear with the flank that carries loads per length: that of its coarse sector, where it has levels."""
-    if not isinstance(body.chain, TwoLevelRing):
-        return body
-    return replace(body, chain=body.chain.coarse, flank=body.chain.flank, stabiliser=None)
-
-
 def _carries(body: GearBody) -> bool:
-    body = carrying(body)
+    body = body.coarse
     rows_and_layers = (body.flank.shape, body.flank.order) in (("interval", 2), ("quadrilateral", 2))
     return rows_and_layers and isinstance(body.chain, ChainedCompliance) and len(body.flank.points) <= MOST_NODES

@@ -60,7 +60,7 @@ class GearField:
         self._rows, self._forces = loads.rows, loads.forces
         if isinstance(body.chain, TwoLevelRing):
             self._rows, self._forces = body.chain.on_coarse_nodes(loads.rows, loads.forces)
-            body = replace(body, flank=body.chain.flank, stabiliser=None, chain=body.chain.coarse, levels=())
+            body = body.coarse
         assert isinstance(body.chain, ChainedCompliance)
         self.body, self._pitch = body, 2.0 * np.pi / body.gear.z
         self._cuts = body.chain.cut_displacements(self._rows, self._forces)

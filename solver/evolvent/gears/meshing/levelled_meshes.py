@@ -20,9 +20,9 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.sector import sector_mesh
 
-MOST_DOFS = 300_000
-"""Degrees of freedom of one fine mesh of both sectors together, from which on levels are used by default: below,
-condensing it takes no longer than condensing the patches of a levelled flank."""
+MOST_DOFS = 200_000
+"""Degrees of freedom of one fine mesh of both sectors together, from which on levels are used by default: about there,
+condensing it takes as long as condensing the patches of a levelled flank."""
 
 
 @dataclass(frozen=True)

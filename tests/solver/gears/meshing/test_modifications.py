@@ -160,8 +160,9 @@ def test_amounts_in_millimetres_are_refused(setting: str, written: str) -> None:
 
 
 def test_check_warns_of_a_relief_that_may_fold_the_mesh() -> None:
-    """A relief that `run` refuses because it folds the mesh is named before."""
-    text = overview(load_scene("demos/yang2022.toml", ["mesh.level=quick", "pinion.tip_relief_um=500"]))
+    """A relief that `run` refuses because it folds the one fine mesh of a sector is named before."""
+    one_mesh = "mesh.level=quick", 'exact.parts=["two-level"]'
+    text = overview(load_scene("demos/yang2022.toml", [*one_mesh, "pinion.tip_relief_um=500"]))
     assert "The mesh may fold, which `run` then refuses: pinion.tip_relief_um: found 500" in text
     assert "fold" not in overview(load_scene("demos/yang2022.toml", ["pinion.tip_relief_um=20"]))
 

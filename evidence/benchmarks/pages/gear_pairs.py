@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from evidence.benchmarks.gears import earlier
+from evidence.benchmarks.gears.earlier import EarlierRow
 from evidence.benchmarks.gears.pitch_precision import PitchRow
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
 from evidence.benchmarks.gears.profile import ProfileRow
@@ -91,6 +93,16 @@ def _runs_said(rows: Sequence[RunRow]) -> list[str]:
         "ranks at once, iterations of Newton's method a position. *Plain*: without error bars, pictures and fields. "
         "Degrees of freedom are those of one sector of both gears, and of the finest flanks where they have levels. "
         "The scenes are in `evidence/benchmarks/gears/whole_runs.py`."
+    ]
+
+
+def _earlier_said(rows: Sequence[EarlierRow]) -> list[str]:
+    commits = ", ".join(sorted({row.commit for row in rows}))
+    return [
+        f"Commit {commits} (*before*) and this one, one run after the other on {RANKS} ranks, nothing beside "
+        "(`python -m evidence.benchmarks.gears.earlier CHECKOUT`): wall seconds of the whole process, memory of all "
+        "ranks at once. *Now* with an empty cache of condensed gears, *again* with the filled one. *Off*: the "
+        "peak-to-peak transmission error before, less that now."
     ]
 
 
@@ -202,6 +214,7 @@ MOTION_TABLE = Table(
 COSTS: tuple[PageSection[Any], ...] = (
     PageSection("Whole runs", "runs", RUN_TABLE, words=_runs_said),
     PageSection("", "beside", RATIO_TABLE),
+    PageSection("", "earlier", earlier.TABLE, words=_earlier_said),
     PageSection(
         "A position and a pitch, against the error", "pitches", PITCH_TABLE, figure=figures.pitches, caption="A pitch",
         words=lambda _: [PITCHES],

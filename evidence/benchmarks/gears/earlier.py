@@ -1,30 +1,32 @@
-"""`python -m evidence.benchmarks.gears.earlier CHECKOUT [--case NAME] [--out DIR]`: whole runs of an earlier commit
-beside those of this one, for docs/benchmark.md.
+"""`python -m evidence.benchmarks.gears.earlier CHECKOUT [--case NAME | --pitches] [--out DIR]`: whole runs and pitches
+of an earlier commit beside those of this one, for docs/benchmark.md.
 
 CHECKOUT holds the earlier commit, with an environment of its own (`make setup`). Each scene is run three times, one
-after the other: by the earlier commit, by this one with an empty cache of condensed gears, and with the filled one.
+after the other: by the earlier commit, by this one with an empty cache of condensed gears, and with the filled one;
+each pitch twice, without a cache.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from math import nan
 from pathlib import Path
 from typing import Any
 
+from evidence.benchmarks.gears.checkouts import Checkout
+from evidence.benchmarks.gears.pitch import LEVELS, PitchFacts, read_facts
+from evidence.benchmarks.gears.three_teeth import FRICTION
 from evidence.benchmarks.gears.whole_runs import FIRST, HELICAL, LIGHT, ONE, RANKS, SLENDER, YANG
-from evidence.checkout import DOCS, ROOT, python_path
-from evidence.processes import Command, Cost, run, run_arguments
+from evidence.checkout import DOCS
+from evidence.processes import Cost, run_arguments
 from evidence.scenes import PLAIN, QUIET
 from evidence.tables import Column, Table, write_rows
 
-TIME_LIMIT = 3600.0  # s
 COMPILED = "mesh.elements_per_contact_width=0.5", "sweep.positions=2", ONE
 """Settings of a small run, after which the forms of all runs are compiled."""
 
@@ -111,41 +113,16 @@ TABLE = Table(EarlierRow, (
 ))
 
 
-@dataclass(frozen=True)
-class Program:
-    """A checkout that runs scenes in a process of its own, as a user starts it."""
-
-    root: Path
-    python: Path
-    cache: Path
-    """Folder for compiled forms and condensed gears."""
-
-    def run(self, out: Path, case: EarlierCase, *settings: str) -> tuple[Cost, dict[str, Any]]:
-        """What a run took, and its summary. Raises RunFailed."""
-        arguments = run_arguments(case.scene, out, (f"mesh.level={case.level}", *case.settings, *settings))
-        variables = {"PYTHONPATH": python_path(self.root), "XDG_CACHE_HOME": str(self.cache), "EVOLVENT_CACHE_GB": "20"}
-        words = (str(self.python), "-m", "evolvent", "run", *arguments)
-        cost = run(Command(words, self.root, out.with_suffix(".log"), variables, RANKS, TIME_LIMIT))
-        return cost, json.loads((out / "summary.json").read_text(encoding="utf-8"))
-
-    @property
-    def commit(self) -> str:
-        """Its abbreviated name."""
-        words = "git", "-C", str(self.root), "rev-parse", "--short", "HEAD"
-        return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
-
-
 def rows(cases: tuple[EarlierCase, ...], checkout: Path, folder: Path) -> Iterator[EarlierRow]:
     """Runs each case three times. Raises RunFailed."""
-    before = Program(checkout, checkout / ".venv/bin/python", folder / "before")
-    now = Program(ROOT, Path(sys.executable), folder / "now")
+    before, now = Checkout.earlier(checkout, folder / "before"), Checkout.this(folder / "now")
     for program, name in ((before, "before"), (now, "now")):
-        program.run(folder / f"{name}_compiled", CASES[0], *COMPILED)
+        _run(program, folder / f"{name}_compiled", CASES[0], *COMPILED)
     for number, case in enumerate(cases):
-        forget(now.cache)
-        earlier, own = before.run(folder / f"{number}_before", case)
-        empty, _ = now.run(folder / f"{number}_empty", case)
-        filled, last = now.run(folder / f"{number}_filled", case)
+        now.forget_gears()
+        earlier, own = _run(before, folder / f"{number}_before", case)
+        empty, _ = _run(now, folder / f"{number}_empty", case)
+        filled, last = _run(now, folder / f"{number}_filled", case)
         yield EarlierRow(
             case.name, case.level, len(last["frictions"]), before.commit, earlier.wall, earlier.memory_MB, empty.wall,
             empty.memory_MB, filled.wall, filled.memory_MB, _peak_to_peak(last),
@@ -153,31 +130,92 @@ def rows(cases: tuple[EarlierCase, ...], checkout: Path, folder: Path) -> Iterat
         )
 
 
-def forget(cache: Path) -> None:
-    """Removes the condensed gears of a cache folder, not its compiled forms."""
-    for entry in (cache / "evolvent" / "condensed").glob("*"):
-        entry.unlink()
+def _run(program: Checkout, out: Path, case: EarlierCase, *settings: str) -> tuple[Cost, dict[str, Any]]:
+    """What a run took, and its summary. Raises RunFailed."""
+    words = run_arguments(case.scene, out, (f"mesh.level={case.level}", *case.settings, *settings))
+    cost = program.run(out.with_suffix(".log"), "evolvent", "run", *words, ranks=RANKS)
+    return cost, json.loads((out / "summary.json").read_text(encoding="utf-8"))
 
 
 def _peak_to_peak(summary: dict[str, Any]) -> float:
     return float(summary["frictions"][0]["transmission_error_peak_to_peak_um"])
 
 
+@dataclass(frozen=True)
+class EarlierPitchRow:
+    """A pitch of Yang's pair on flanks in levels on one rank, by both commits."""
+
+    elements: float
+    """Across the contact width 2b."""
+    positions: int
+    commit: str
+    """The earlier one."""
+    earlier_seconds: float
+    """Wall time of all but meshing [s], as below."""
+    earlier_MB: float
+    earlier_error: float
+    """Relative, of the mean transmission error, against that of the overkill pitch, as below."""
+    seconds: float
+    memory_MB: float
+    error: float
+
+
+PITCH_TABLE = Table(EarlierPitchRow, (
+    Column("elements across 2b", "elements", "g"), Column("before s", "earlier_seconds", ".0f"),
+    Column("MB", "earlier_MB", ".0f"), Column("error %", "earlier_error", "+.2%"), Column("now s", "seconds", ".0f"),
+    Column("MB", "memory_MB", ".0f"), Column("error %", "error", "+.2%"),
+    Column("times", lambda row: f"**{row.earlier_seconds / row.seconds:.1f}**"),
+))
+ELEMENTS, OVERKILL, POSITIONS = (0.8, 1.2, 1.7, 3.75), 1.9, 20
+"""Elements across 2b in levels, and those of one mesh with which errors are measured."""
+
+
+def pitch_rows(elements: tuple[float, ...], checkout: Path, folder: Path) -> Iterator[EarlierPitchRow]:
+    """Each pitch by both commits. Raises RunFailed."""
+    before, now = Checkout.earlier(checkout, folder / "before"), Checkout.this(folder / "now")
+    for program in (before, now):
+        _pitch(program, folder, elements[0], 2, LEVELS)  # compiles the forms
+    known = _pitch(now, folder, OVERKILL, POSITIONS)[1].mean_error
+    for n in elements:
+        (cost, facts), (own, found) = (_pitch(program, folder, n, POSITIONS, LEVELS) for program in (before, now))
+        yield EarlierPitchRow(
+            n, found.counted, before.commit, facts.without_meshing, cost.memory_MB, facts.mean_error / known - 1.0,
+            found.without_meshing, own.memory_MB, found.mean_error / known - 1.0,
+        )
+
+
+def _pitch(
+    program: Checkout, folder: Path, elements: float, positions: int, *settings: str
+) -> tuple[Cost, PitchFacts]:
+    """What a pitch took, without a cache of condensed gears."""
+    out = folder / "pitch.json"
+    words = out, elements, "quick", positions, FRICTION, *settings
+    cost = program.run(folder / "pitch.log", "evidence.benchmarks.gears.pitch", *words, ranks=1)
+    return cost, read_facts(out)
+
+
 def main() -> None:
-    """Measures all cases, or those whose names hold some words; the other rows of the table stay."""
+    """Measures all cases, or those whose names hold some words, or the pitches; other rows of the table stay."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("checkout", type=Path)
     parser.add_argument("--case", default="", help="cases alone whose names and levels hold these words")
+    parser.add_argument("--pitches", action="store_true", help="pitches on one rank in place of whole runs")
     parser.add_argument("--out", type=Path, default=DOCS)
     given = parser.parse_args()
-    path = given.out / "benchmark" / "earlier.csv"
     wanted = tuple(case for case in CASES if given.case in f"{case.name}, {case.level}")
-    measured = {(row.case, row.level): row for row in TABLE.read(path)}
+    measure = partial(pitch_rows, ELEMENTS) if given.pitches else partial(rows, wanted)
+    table, name = (PITCH_TABLE, "earlier_pitches") if given.pitches else (TABLE, "earlier")
+    path = given.out / "benchmark" / f"{name}.csv"
+    measured = {_key(row): row for row in table.read(path)}
     with tempfile.TemporaryDirectory() as folder:
-        for row in rows(wanted, given.checkout.resolve(), Path(folder)):
-            measured[row.case, row.level] = row
+        for row in measure(given.checkout.resolve(), Path(folder)):
+            measured[_key(row)] = row
             print(row, flush=True)
             write_rows(path, list(measured.values()))
+
+
+def _key(row: EarlierRow | EarlierPitchRow) -> tuple[object, ...]:
+    return (row.case, row.level) if isinstance(row, EarlierRow) else (row.elements,)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from matplotlib.ticker import LogLocator
 
 from evidence.benchmarks.comparison.programs import EVOLVENT
 from evidence.benchmarks.comparison.work_precision import Row
+from evidence.benchmarks.gears.earlier import EarlierPitchRow
 from evidence.benchmarks.gears.pitch_precision import IN_LEVELS, ONE_MESH, PitchRow
 from evidence.benchmarks.gears.position_cost import GearRow
 from evidence.benchmarks.gears.scaling import SizeRow, exponent
@@ -91,6 +92,25 @@ def gears(rows: Sequence[GearRow]) -> Figure:
         axes.grid(axis="y", visible=False)
         axes.margins(x=0.2)
         axes.set_xlabel("CPU time a position [s]")
+    return figure
+
+
+def earlier_pitches(rows: Sequence[EarlierPitchRow]) -> Figure:
+    """Seconds of a pitch over the error of its mean transmission error, log-log, before and now."""
+    with style.styled():
+        see = "Down and left is better. Labels: elements across the contact width."
+        figure = style.sheet("A pitch on flanks in levels: run time against error", see, (7.5, 5.0))
+        axes = figure.subplots()
+        before = f"commit {rows[0].commit}", "earlier_error", "earlier_seconds", "o--"
+        for label, error, seconds, marks in (before, ("now", "error", "seconds", "s-")):
+            x, y = 100 * np.abs(column(rows, error)), column(rows, seconds)
+            axes.loglog(x, y, marks, ms=5, label=label)
+            for n, *place in zip(column(rows, "elements"), x, y):
+                axes.annotate(f"{n:g}", place, (6, 4), textcoords="offset points", fontsize=8)
+        axes.set_xlabel("error of the mean transmission error [%]")
+        axes.set_ylabel("wall time without meshing [s]")
+        _plain_ticks(axes)
+        axes.legend()
     return figure
 
 

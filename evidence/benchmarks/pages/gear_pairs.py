@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from evidence.benchmarks.gears import earlier
-from evidence.benchmarks.gears.earlier import EarlierRow
+from evidence.benchmarks.gears.earlier import EarlierPitchRow, EarlierRow
 from evidence.benchmarks.gears.pitch_precision import PitchRow
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
 from evidence.benchmarks.gears.profile import ProfileRow
@@ -103,6 +103,14 @@ def _earlier_said(rows: Sequence[EarlierRow]) -> list[str]:
         "(`python -m evidence.benchmarks.gears.earlier CHECKOUT`): wall seconds of the whole process, memory of all "
         "ranks at once. *Now* with an empty cache of condensed gears, *again* with the filled one. *Off*: the "
         "peak-to-peak transmission error before, less that now."
+    ]
+
+
+def _earlier_pitches_said(rows: Sequence[EarlierPitchRow]) -> list[str]:
+    return [
+        f"Yang's pair on flanks in levels, {rows[0].positions} positions on one rank, without a cache of condensed "
+        f"gears: commit {rows[0].commit} and this one (the same command with `--pitches`). Wall seconds without "
+        "meshing; errors of the mean transmission error against one mesh."
     ]
 
 
@@ -215,6 +223,10 @@ COSTS: tuple[PageSection[Any], ...] = (
     PageSection("Whole runs", "runs", RUN_TABLE, words=_runs_said),
     PageSection("", "beside", RATIO_TABLE),
     PageSection("", "earlier", earlier.TABLE, words=_earlier_said),
+    PageSection(
+        "", "earlier_pitches", earlier.PITCH_TABLE, figure=figures.earlier_pitches, words=_earlier_pitches_said,
+        caption="A pitch before and now",
+    ),
     PageSection(
         "A position and a pitch, against the error", "pitches", PITCH_TABLE, figure=figures.pitches, caption="A pitch",
         words=lambda _: [PITCHES],

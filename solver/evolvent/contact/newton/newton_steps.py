@@ -19,7 +19,7 @@ import scipy.sparse as sp
 
 from evolvent.contact.newton.jump_compliance import ActiveCompliance, Inverse, JumpCompliance
 from evolvent.contact.newton.krylov import gmres
-from evolvent.contact.newton.reduced_tangent import FreeMotions
+from evolvent.contact.newton.reduced_tangent import FreeMotions, ReducedTangent
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent import Tangent
 from evolvent_meshes.arrays import Floats, Ints, Reals
@@ -29,6 +29,9 @@ ITERATIONS = 90  # with a new factor
 REUSE_ITERATIONS = 8  # at most, with an earlier factor; a new factor costs as much
 NEARLY = 2.0  # times the wanted residual: an earlier factor that came so close is still good
 REFINEMENTS = 6  # after which all columns are factored instead
+MOST_COLUMNS = 6000
+"""Active unknowns up to which all columns of a compliance that is known by products are factored: each is a product of
+some milliseconds, all of them 290 MB."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,7 @@ class NewtonSteps:
         self.A, self.motions = A, motions
         self._active = ActiveUnknowns.of(np.zeros(0, dtype=int), A, motions)
         self._factored: Inverse | None = None
+        self._between: Floats | None = None
 
     def solve(self, tangent: Tangent, right: Floats, accuracy: float) -> Floats:
         """T⁻¹ right, (m + r,), to `accuracy` of |right|; to rounding if A is a matrix and no column is left out. Raises
@@ -112,12 +116,36 @@ class NewtonSteps:
         return SINGLE if self._active.A.dtype == np.float32 else 0.0
 
     def _exact(self, tangent: Tangent, right: Floats) -> Floats:
-        if self.A.matrix is None:
+        """T⁻¹ right by a factor of all columns; where A is known by products, of a matrix between active unknowns that
+        is made of them. Raises NotConverged where these are too many."""
+        if self.A.matrix is not None:
+            return tangent.solve(right)
+        own, size = self._active.unknowns, len(right)
+        rows = np.append(own, np.arange(len(self.motions.jumps), size))
+        if len(own) > MOST_COLUMNS:
             raise NotConverged(
-                f"Newton step: wanted it within {ITERATIONS} iterations of GMRES, found no convergence; a smaller step "
-                "may help"
+                f"Newton step: wanted it within {ITERATIONS} iterations of GMRES, or at most {MOST_COLUMNS} active "
+                f"unknowns, found no convergence and {len(own)}; a smaller step may help"
             )
-        return tangent.solve(right)
+        M, motions = tangent.M[own][:, own], self.motions.of(own, float)
+        inverse = ReducedTangent.of(M, self._columns(), motions, np.arange(len(own)))
+        y = np.zeros(size)
+        for _ in range(2):  # f = b − M z loses digits: one refinement
+            residual = right - tangent.times(y)
+            y = y + self._active.extend(inverse.solve(residual[rows]), size)
+        return y
+
+    def _columns(self) -> Floats:
+        """A (u, u) between the active unknowns [mm/N], column by column."""
+        own, force = self._active.unknowns, np.zeros(len(self.motions.jumps))
+        if self._between is None or len(self._between) != len(own):
+            A = np.empty((len(own), len(own)))
+            for j, unknown in enumerate(own):
+                force[unknown] = 1.0
+                A[:, j] = self.A.times(force)[own]
+                force[unknown] = 0.0
+            self._between = A
+        return self._between
 
     def _activate(self, tangent: Tangent, right: Floats) -> None:
         """Adds the unknowns whose rows or columns in M or whose entries of `right` are not zero to the active ones."""

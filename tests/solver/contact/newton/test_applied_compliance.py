@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from evolvent.contact.newton import newton_steps
 from evolvent.contact.newton.applied_compliance import AppliedCompliance, summed, with_modes
 from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal, RoughContacts, few_modes
 from evolvent.contact.newton.jump_compliance import DenseCompliance
@@ -100,6 +101,20 @@ def test_newton_step_is_that_of_the_matrix(k: int, sticks: float, resistance: fl
     A, H = exact(k), T.motions.jumps
     dense = np.block([[np.eye(N * k) + T.M @ A, -(T.M @ H)], [H.T, T.motions.resistance]])
     assert np.linalg.norm(right - dense @ found) <= 1.1 * accuracy * np.linalg.norm(right)
+
+
+@pytest.mark.parametrize("k", [1, 3])
+def test_all_columns_are_factored_where_iterations_fail(k: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """GMRES that always fails: the step comes from a matrix that is made of products, exact to rounding; with more
+    active unknowns than it may have, an error says so."""
+    monkeypatch.setattr(newton_steps, "gmres", lambda times, inverse, right, *_: (np.zeros_like(right), False))
+    T, right = tangent(applied(k), k, friction=1.0), RNG(7).normal(size=N * k + 1)
+    found = NewtonSteps(T.A, T.motions).solve(T, right, 1e-2)
+    same = tangent(DenseCompliance(exact(k), k), k, friction=1.0)
+    assert np.linalg.norm(right - same.times(found)) < 1e-12 * np.linalg.norm(right)
+    monkeypatch.setattr(newton_steps, "MOST_COLUMNS", 2)
+    with pytest.raises(NotConverged, match="at most 2 active unknowns"):
+        NewtonSteps(T.A, T.motions).solve(T, right, 1e-2)
 
 
 @pytest.mark.parametrize("resistance", [0.0, 9.0])

@@ -36,9 +36,10 @@ class CellAxis:
     width: Floats
 
     @staticmethod
-    def of(line: ContactLine) -> CellAxis | None:
-        """The axis of cells as wide as the rows of the pinion's flank; None where the line has left the flanks."""
-        limits = line.cell_limits(partial(cell_length, line))
+    def of(line: ContactLine, half_width: float) -> CellAxis | None:
+        """The axis of cells as wide as the rows of the pinion's flank; None where the line has left the flanks, unless
+        the window, of this half-width [mm of profile arc], is infinite: then it is all over the face."""
+        limits = line.cell_limits(partial(cell_length, line), bool(np.isinf(half_width)))
         if not len(limits):
             return None
         z = _heights(limits)

@@ -55,18 +55,11 @@ class ContactLattice:
     weights: Floats
     mass: sp.csr_matrix
 
-    @property
-    def nominal_gap(self) -> Floats:
-        """Gap (q,) of flanks without modifications at the points [mm], a parabola across the line."""
-        stand = self.line.stand
-        ξ = np.clip(stand.roll_distance(self.line.tooth, self.point_z), *stand.pair.path_of_contact)
-        return np.asarray(self.point_across**2 / (2.0 * stand.pair.relative_curvature_radius(ξ)))
-
     @staticmethod
     def of(line: ContactLine, half_width: float) -> ContactLattice | None:
-        """Cells with a corner within `half_width` [mm of profile arc] of the line, or hardly beyond; None where no cell
-        lies on both flanks."""
-        axis = CellAxis.of(line)
+        """Cells with a corner within `half_width` [mm of profile arc] of the line, or hardly beyond, and where that is
+        infinite on whole flanks; None where no cell lies on both flanks."""
+        axis = CellAxis.of(line, half_width)
         if axis is None:
             return None
         grid = _Grid.of(line, axis, half_width)

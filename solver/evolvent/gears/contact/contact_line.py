@@ -133,16 +133,17 @@ class ContactLine:
         about = np.lib.stride_tricks.sliding_window_view(np.pad(inner, 2, mode="edge"), 4)
         return np.asarray(about.max(axis=1))
 
-    def cell_limits(self, length: Callable[[Floats], Floats]) -> Floats:
+    def cell_limits(self, length: Callable[[Floats], Floats], whole: bool = False) -> Floats:
         """Heights (L + 1,) that limit cells along the line [mm]; empty where the line has left the flanks.
 
         length: of cells at some heights (h,) [mm]; they are no shorter than a layer of the pinion's flank, and shorter
             where a line ends or turns.
+        whole: all over the face, however far the line has left the path of contact.
         """
         pinion, wheel = (flank.height for flank in self.flanks)
         low, high = max(pinion[0], wheel[0]), min(pinion[-1], wheel[-1])
         layers = _without_short(pinion[::2][(pinion[::2] > low) & (pinion[::2] < high)], np.array([low, high]))
-        near = near_path(self.stand, self.tooth, layers)
+        near = near_path(self.stand, self.tooth, layers) | whole
         used = near[1:] | near[:-1]
         if not used.any():
             return np.zeros(0)

@@ -107,12 +107,14 @@ def pair_at_lattice(
     """
     faced = faced_points(lattice.line, lattice.point_arc, lattice.point_z, surfaces)
     weight, gap = lattice.weights * faced.pairing.weight, faced.pairing.gap
-    facing = faced.inner & (lattice.nominal_gap < max_gap)
-    lost = float(np.sum(weight[~faced.found & facing]))
-    if lost > ALLOWED_LOSS * float(np.sum(weight[facing])):
+    missing = np.flatnonzero(~faced.found & faced.inner)
+    away = lattice.line.distance(lattice.point_arc[missing], lattice.point_z[missing], surfaces)
+    lost = float(np.sum(weight[missing[away < max_gap]]))
+    reached = lost + float(np.sum(weight[faced.found & faced.inner & (gap < max_gap)]))
+    if lost > ALLOWED_LOSS * reached:
         raise SearchError(
             f"contact: wanted partners on the wheel's flank for all but {ALLOWED_LOSS} of the pinion's in reach, none "
-            f"found for {lost:.3e} of {np.sum(weight[facing]):.3e} mm²; refine the mesh"
+            f"found for {lost:.3e} of {reached:.3e} mm²; refine the mesh"
         )
     kept = faced.found & faced.inside & (gap >= -max_overlap) & (gap <= max_gap)
     return replace(faced.pairing, weight=weight, lost=lost).of(kept), kept

@@ -126,6 +126,8 @@ def _unsearched_pairs(
 ) -> Pairing | None:
     """Points that the window leaves out with partners near them: in slices off the path of contact, and as far beside
     the window as steep modifications may move the contact. None where the window leaves nothing out."""
+    if np.isinf(geometry.half_width):
+        return None
     pinion, wheel = geometry.bodies
     reach, depth = NEARLY * pinion.gear.normal_module, PENETRATION * pinion.gear.normal_module
     moved = farthest_moved(geometry.stand.pair)

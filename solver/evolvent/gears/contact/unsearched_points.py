@@ -27,7 +27,7 @@ def unsearched_pairs(
     moved: how far beside the window contact is looked for in slices on the path of contact [mm of profile arc].
     flanks: of pinion and wheel in place.
     """
-    axis = CellAxis.of(line)
+    axis = CellAxis.of(line, half_width)
     arc, z = _points(line)
     pair, ξ = line.stand.pair, line.stand.roll_distance(line.tooth, z)
     start, end = pair.path_of_contact
@@ -45,7 +45,8 @@ def unsearched_pairs(
 
 def _points(line: ContactLine) -> tuple[Floats, Floats]:
     """Profile arcs on the pinion's flank and heights (q,) of points all over what both flanks share."""
-    height = line.flanks[0].height
+    height, wheel = (flank.height for flank in line.flanks)
+    height = height[(height >= wheel[0]) & (height <= wheel[-1])]
     line_arc = line.arc(height)
     low, high = (line_arc + edge for edge in line.edges(height, line_arc))
     shared = high > low

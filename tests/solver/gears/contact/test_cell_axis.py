@@ -16,7 +16,7 @@ from tests.support.paper_pairs import yang
 @pytest.mark.parametrize("tooth", TEETH)
 def test_line_and_width_at_the_nodes(tooth: int) -> None:
     """Exact at limits and middles: the contact line's, and the width of the flank's rows there."""
-    axis = CellAxis.of(line(tooth))
+    axis = CellAxis.of(line(tooth), 0.8)
     assert axis is not None
     arc, width = axis.at(axis.heights)
     assert arc == pytest.approx(line(tooth).arc(axis.heights), abs=1e-12)
@@ -25,7 +25,7 @@ def test_line_and_width_at_the_nodes(tooth: int) -> None:
 
 def test_line_between_the_nodes() -> None:
     """Problem: the line of conjugate flanks across the whole face, a parabola in height. Exact: the same."""
-    axis = CellAxis.of(line(0))
+    axis = CellAxis.of(line(0), 0.8)
     assert axis is not None
     z = np.linspace(axis.limits[0], axis.limits[-1], 50)
     assert axis.at(z)[0] == pytest.approx(line(0).arc(z), abs=1e-9)
@@ -33,7 +33,7 @@ def test_line_between_the_nodes() -> None:
 
 def test_no_axis_out_of_reach() -> None:
     """A tooth pair three pitches away."""
-    assert CellAxis.of(line(4)) is None
+    assert CellAxis.of(line(4), 0.8) is None
 
 
 @pytest.mark.parametrize("crowning", [0.0, 4.0, 40.0])

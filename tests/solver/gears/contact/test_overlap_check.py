@@ -14,14 +14,16 @@ from evolvent.gears.contact import overlap_check, pair_contact, tooth_contact
 from evolvent.gears.contact.moved_contact import farthest_moved
 from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
-from evolvent.gears.gear_model import GearModel
+from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.kinematics import PairRotation
 from evolvent.gears.sweep import position_search
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
 DEEP = 277  # the seed of a plane pair whose next tooth pair touches far before its contact line reaches the flank
+EARLY = 15
 TIMES = 5.0  # its torque, so that the teeth give way by a quarter of a module
 
 
@@ -52,6 +54,29 @@ def test_contact_outside_the_window_is_found(deep: GearModel, monkeypatch: pytes
     for shared, low, high in ((overlooked, 0.05, np.inf), (found, 0.0, 0.0)):
         depth = overlap_outside(shared.contact, shared.unsearched, shared.smooth.force, (0.0, 0.0))
         assert low <= depth <= high
+
+
+def early(two_level: bool) -> GearModel:
+    """A heavily loaded spur pair in space whose next tooth pair touches before its path of contact."""
+    problem = gear_problem(random_scene(EARLY, plane=False))
+    mesh = replace(problem.mesh, order=2, shape="hexahedron", two_level=two_level)
+    return prepare_model(replace(problem, mesh=mesh)).model
+
+
+@pytest.mark.slow
+def test_contact_before_the_path_is_found_on_contact_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: next pair's tip edge overlaps by 6 µm, and its contact line has left the flanks. Exact: the rotation on
+    one mesh; overlooking the overlap gives another one, a twentieth larger."""
+    angle = np.radians(6.2027)
+    wanted = approach(shared_position(early(two_level=False), angle, (0.0, 0.0), [0.0], None))
+    model = early(two_level=True)
+    found = shared_position(model, angle, (0.0, 0.0), [0.0], None)
+    assert found.contact.geometry.half_width == np.inf
+    assert len({int(tooth) for tooth in found.contact.geometry.tooth}) > 2
+    assert approach(found) == pytest.approx(wanted, rel=0.01)
+    assert found.unsearched == ()
+    monkeypatch.setattr(position_search, "overlap_outside", lambda *_: 0.0)
+    assert abs(approach(shared_position(model, angle, (0.0, 0.0), [0.0], None))) > 1.04 * abs(wanted)
 
 
 def test_nominal_contact_is_all_inside_the_window() -> None:

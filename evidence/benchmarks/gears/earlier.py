@@ -66,6 +66,8 @@ class EarlierRow:
     """Number of friction coefficients."""
     commit: str
     """The earlier one."""
+    own_commit: str
+    """This one."""
     earlier_seconds: float
     """Wall time of the whole process, as of those below [s]."""
     earlier_MB: float
@@ -120,13 +122,13 @@ def rows(cases: tuple[EarlierCase, ...], checkout: Path, folder: Path) -> Iterat
         _run(program, folder / f"{name}_compiled", CASES[0], *COMPILED)
     for number, case in enumerate(cases):
         now.forget_gears()
-        earlier, own = _run(before, folder / f"{number}_before", case)
+        earlier, first = _run(before, folder / f"{number}_before", case)
         empty, _ = _run(now, folder / f"{number}_empty", case)
         filled, last = _run(now, folder / f"{number}_filled", case)
         yield EarlierRow(
-            case.name, case.level, len(last["frictions"]), before.commit, earlier.wall, earlier.memory_MB, empty.wall,
-            empty.memory_MB, filled.wall, filled.memory_MB, _peak_to_peak(last),
-            _peak_to_peak(own) - _peak_to_peak(last), case.least_ratio, case.memory_bar_MB, case.least_filled_ratio,
+            case.name, case.level, len(last["frictions"]), before.commit, now.commit, earlier.wall, earlier.memory_MB,
+            empty.wall, empty.memory_MB, filled.wall, filled.memory_MB, _peak_to_peak(last),
+            _peak_to_peak(first) - _peak_to_peak(last), case.least_ratio, case.memory_bar_MB, case.least_filled_ratio,
         )
 
 
@@ -150,6 +152,8 @@ class EarlierPitchRow:
     positions: int
     commit: str
     """The earlier one."""
+    own_commit: str
+    """This one."""
     earlier_seconds: float
     """Wall time of all but meshing [s], as below."""
     earlier_MB: float
@@ -179,8 +183,8 @@ def pitch_rows(elements: tuple[float, ...], checkout: Path, folder: Path) -> Ite
     for n in elements:
         (cost, facts), (own, found) = (_pitch(program, folder, n, POSITIONS, LEVELS) for program in (before, now))
         yield EarlierPitchRow(
-            n, found.counted, before.commit, facts.without_meshing, cost.memory_MB, facts.mean_error / known - 1.0,
-            found.without_meshing, own.memory_MB, found.mean_error / known - 1.0,
+            n, found.counted, before.commit, now.commit, facts.without_meshing, cost.memory_MB,
+            facts.mean_error / known - 1.0, found.without_meshing, own.memory_MB, found.mean_error / known - 1.0,
         )
 
 

@@ -97,9 +97,9 @@ def _runs_said(rows: Sequence[RunRow]) -> list[str]:
 
 
 def _earlier_said(rows: Sequence[EarlierRow]) -> list[str]:
-    commits = ", ".join(sorted({row.commit for row in rows}))
+    before, now = (", ".join(sorted(names)) for names in zip(*{(row.commit, row.own_commit) for row in rows}))
     return [
-        f"Commit {commits} (*before*) and this one, one run after the other on {RANKS} ranks, nothing beside "
+        f"Commits {before} (*before*) and {now} (*now*), one run after the other on {RANKS} ranks "
         "(`python -m evidence.benchmarks.gears.earlier CHECKOUT`): wall seconds of the whole process, memory of all "
         "ranks at once. *Now* with an empty cache of condensed gears, *again* with the filled one. *Off*: the "
         "peak-to-peak transmission error before, less that now."
@@ -109,8 +109,9 @@ def _earlier_said(rows: Sequence[EarlierRow]) -> list[str]:
 def _earlier_pitches_said(rows: Sequence[EarlierPitchRow]) -> list[str]:
     return [
         f"Yang's pair on flanks in levels, {rows[0].positions} positions on one rank, without a cache of condensed "
-        f"gears: commit {rows[0].commit} and this one (the same command with `--pitches`). Wall seconds without "
-        "meshing; errors of the mean transmission error against one mesh."
+        f"gears: commits {rows[0].commit} and {rows[0].own_commit} (the same command with `--pitches`). Wall seconds "
+        "without meshing; errors of the mean transmission error against one mesh, whose own error is that of the "
+        "overkill pitch below."
     ]
 
 

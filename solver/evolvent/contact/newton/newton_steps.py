@@ -4,7 +4,8 @@ An approximate inverse of the tangent as a preconditioner leads GMRES to T⁻¹ 
 compliance is a matrix, a third of its columns gives that inverse (tangent.py), and single precision halves the memory
 that is read; where it is known by products, `block_inverse` does. Only the active unknowns take part: outside the nodes
 in contact T is the identity. Terms of T y nearly cancel, so that single precision gives about five digits; for more,
-the residual is computed with all of A in double precision and solved for again.
+the residual is computed with all of A in double precision and solved for again. Where GMRES fails, all columns are
+factored.
 
 Tangents of one system are similar, also at other friction coefficients: an earlier factor costs a few more iterations
 and is reused until these are too many.
@@ -30,8 +31,8 @@ REUSE_ITERATIONS = 8  # at most, with an earlier factor; a new factor costs as m
 NEARLY = 2.0  # times the wanted residual: an earlier factor that came so close is still good
 REFINEMENTS = 6  # after which all columns are factored instead
 MOST_COLUMNS = 6000
-"""Active unknowns up to which all columns of a compliance that is known by products are factored: each is a product of
-some milliseconds, all of them 290 MB."""
+"""Active unknowns up to which all columns of a compliance that is known by products are factored: each is a product,
+and its matrix of 290 MB is held four or five times while it is factored."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ class NewtonSteps:
 
     def solve(self, tangent: Tangent, right: Floats, accuracy: float) -> Floats:
         """T⁻¹ right, (m + r,), to `accuracy` of |right|; to rounding if A is a matrix and no column is left out. Raises
-        NotConverged where T is singular."""
+        NotConverged where T is singular, or GMRES fails with more than `MOST_COLUMNS` active unknowns."""
         if tangent.whole and self.A.matrix is not None:
             return tangent.solve(right)
         self._activate(tangent, right)
@@ -116,29 +117,29 @@ class NewtonSteps:
         return SINGLE if self._active.A.dtype == np.float32 else 0.0
 
     def _exact(self, tangent: Tangent, right: Floats) -> Floats:
-        """T⁻¹ right by a factor of all columns; where A is known by products, of a matrix between active unknowns that
-        is made of them. Raises NotConverged where these are too many."""
+        """T⁻¹ right by a factor of all columns; where A is known by products, of its matrix between the active
+        unknowns, one product a column. Raises NotConverged where T is singular, or has too many active unknowns."""
         if self.A.matrix is not None:
             return tangent.solve(right)
         own, size = self._active.unknowns, len(right)
         rows = np.append(own, np.arange(len(self.motions.jumps), size))
         if len(own) > MOST_COLUMNS:
             raise NotConverged(
-                f"Newton step: wanted it within {ITERATIONS} iterations of GMRES, or at most {MOST_COLUMNS} active "
-                f"unknowns, found no convergence and {len(own)}; a smaller step may help"
+                f"Newton step: wanted convergence within {ITERATIONS} iterations of GMRES or at most {MOST_COLUMNS} "
+                f"active unknowns, found neither: {len(own)} unknowns; a smaller step may help"
             )
         M, motions = tangent.M[own][:, own], self.motions.of(own, float)
-        inverse = ReducedTangent.of(M, self._columns(), motions, np.arange(len(own)))
+        inverse = ReducedTangent.of(M, self._active_matrix(), motions, np.arange(len(own)))
         y = np.zeros(size)
         for _ in range(2):  # f = b − M z loses digits: one refinement
             residual = right - tangent.times(y)
             y = y + self._active.extend(inverse.solve(residual[rows]), size)
         return y
 
-    def _columns(self) -> Floats:
-        """A (u, u) between the active unknowns [mm/N], column by column."""
+    def _active_matrix(self) -> Floats:
+        """A (u, u) between the active unknowns [mm/N], column by column; kept until there are more of them."""
         own, force = self._active.unknowns, np.zeros(len(self.motions.jumps))
-        if self._between is None or len(self._between) != len(own):
+        if self._between is None:
             A = np.empty((len(own), len(own)))
             for j, unknown in enumerate(own):
                 force[unknown] = 1.0
@@ -156,7 +157,7 @@ class NewtonSteps:
         needed[tangent.M.indices] = True
         if (needed & ~before).any():
             self._active = ActiveUnknowns.of(np.flatnonzero(needed | before), self.A, self.motions)
-            self._factored = None
+            self._factored = self._between = None
 
     def _by_gmres(self, M: sp.csr_matrix, kept: Ints, right: Reals, relative: float) -> tuple[Reals, bool]:
         """Solution y (u + r,), and whether its residual is at most `relative` of `right`, or what their precision

@@ -37,8 +37,8 @@ class CellAxis:
 
     @staticmethod
     def of(line: ContactLine, half_width: float) -> CellAxis | None:
-        """The axis of cells as wide as the rows of the pinion's flank; None where the line has left the flanks, unless
-        the window, of this half-width [mm of profile arc], is infinite: then it is all over the face."""
+        """The axis of cells as wide as the rows of the pinion's flank; None where the line has left the flanks. Where
+        the half-width of the window [mm of profile arc] is infinite, the axis spans the whole face instead."""
         limits = line.cell_limits(partial(cell_length, line), bool(np.isinf(half_width)))
         if not len(limits):
             return None

@@ -57,8 +57,8 @@ class ContactLattice:
 
     @staticmethod
     def of(line: ContactLine, half_width: float) -> ContactLattice | None:
-        """Cells with a corner within `half_width` [mm of profile arc] of the line, or hardly beyond, and where that is
-        infinite on whole flanks; None where no cell lies on both flanks."""
+        """Cells with a corner within `half_width` [mm of profile arc] of the line, or hardly beyond; cells over all
+        that both flanks share where it is infinite. None where no cell lies on both flanks."""
         axis = CellAxis.of(line, half_width)
         if axis is None:
             return None

@@ -66,15 +66,16 @@ def faced_points(line: ContactLine, arc: Floats, z: Floats, surfaces: tuple[Surf
     return FacedPoints(Pairing(facet1, xi1, facet2, xi2, measure, gap, 0.0), found, wheel.is_inner(opposite), partner)
 
 
-def with_wheel_edges(line: ContactLine, surfaces: tuple[Surface, Surface]) -> ContactLine:
+def with_wheel_edges(line: ContactLine, surfaces: tuple[Surface, Surface], whole: bool = False) -> ContactLine:
     """The line with the places on the pinion's flank that really face the edges of the wheel's: rotation beyond the
     nominal one, deflection, modifications and misalignment move them by hundredths of a millimetre. Far from the path
     of contact they are taken to be moved as at its end.
 
     surfaces: flanks of pinion and wheel in place, or as they were displaced.
+    whole: look for them all over the face, however far the line has left the path of contact.
     """
     z, own = line.flanks[Member.PINION].height, line.flanks[Member.PINION].arc
-    z = z[near_path(line.stand, line.tooth, z)]
+    z = z[near_path(line.stand, line.tooth, z) | whole]
     if len(z) == 0:
         return line
     edges, away = np.array(line.edges_of_wheel(z)), np.zeros((2, len(z)))  # of the wheel's root and tip

@@ -135,7 +135,8 @@ def _on_lattice(
     """Contact with a jump on cells that follow the contact line."""
     pinion = bodies[Member.PINION]
     assert pinion.stabiliser is not None
-    line = with_wheel_edges(ContactLine((bodies[0].cells, bodies[1].cells), stand, tooth), flanks)
+    line = ContactLine((bodies[0].cells, bodies[1].cells), stand, tooth)
+    line = with_wheel_edges(line, flanks, whole=bool(np.isinf(half_width)))
     lattice = ContactLattice.of(line, half_width)
     if lattice is None:
         return None

@@ -8,6 +8,7 @@ goes through the mesh; along those of the deflected flanks energy is kept.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -82,7 +83,10 @@ def deflected_equilibrium(
 
 def deflected_contact(model: GearModel, contact: GearContact, equilibrium: Equilibrium) -> GearContact:
     """The contact between the flanks as an equilibrium has deflected and turned them. Raises NotConverged."""
-    displaced = _displaced_flanks(contact.geometry, equilibrium)
+    teeth = tuple(t.tooth for t in contact.geometry.teeth)
+    if np.isinf(contact.geometry.half_width):  # tooth pairs may touch that the window had no points of
+        teeth = tuple(model.teeth)
+    displaced = _displaced_flanks(contact.geometry, equilibrium, teeth)
     stand = contact.stand.turned(model.load.on, float(equilibrium.motion[0]))
     where = f"pinion at {np.degrees(stand.angle):.3f}°: wanted deflected flanks that face each other, found"
     try:
@@ -98,7 +102,9 @@ def _with_window(contact: GearContact, half_width: float) -> GearContact:
     return replace(contact, geometry=replace(contact.geometry, half_width=half_width))
 
 
-def _displaced_flanks(geometry: ContactGeometry, equilibrium: Equilibrium) -> dict[int, Displaced]:
+def _displaced_flanks(
+    geometry: ContactGeometry, equilibrium: Equilibrium, teeth: Sequence[int]
+) -> dict[int, Displaced]:
     """Tooth pair -> displacements of its whole flanks, the pinion's with the contact's flux (the extended trace of
     contact_operator.py)."""
     loads = [(geometry.rows(gear)[0], geometry.flank_forces(gear, equilibrium.force)) for gear in Member]
@@ -109,7 +115,7 @@ def _displaced_flanks(geometry: ContactGeometry, equilibrium: Equilibrium) -> di
         return np.asarray(u @ geometry.stand.rotation(gear, geometry.d).T)
 
     pinion, wheel = Member.PINION, Member.WHEEL
-    return {t.tooth: (displacements(pinion, t.tooth), displacements(wheel, t.tooth)) for t in geometry.teeth}
+    return {tooth: (displacements(pinion, tooth), displacements(wheel, tooth)) for tooth in teeth}
 
 
 def _equilibrium(

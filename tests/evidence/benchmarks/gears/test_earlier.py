@@ -15,7 +15,7 @@ from evidence.benchmarks.gears.earlier import CASES, EarlierRow, pitch_rows, row
 from evidence.benchmarks.gears.pitch import LEVELS, PitchFacts
 from evidence.processes import Cost
 
-ROW = EarlierRow("a", "standard", 1, "abc", 300.0, 5e3, 100.0, 2.9e3, 50.0, 1e3, 2.0, 0.0, 3.0, 3e3, 5.9)
+ROW = EarlierRow("a", "standard", 1, "abc", "def", 300.0, 5e3, 100.0, 2.9e3, 50.0, 1e3, 2.0, 0.0, 3.0, 3e3, 5.9)
 
 
 @pytest.mark.parametrize(

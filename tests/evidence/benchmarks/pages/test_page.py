@@ -66,9 +66,11 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
         "runs": [RunRow("long", "fine", 1, 10, 20, 5.0, 6.0, 0.0, 1.0, 12.0, 10.0, 300.0, nan, 8.0),
                  failed(RunCase("hung", "b.toml", "quick", ()), "ended after 9 s")],
         "earlier": [
-            EarlierRow("both", "fine", 1, "abcdef0", 400.0, 9e3, 100.0, 2e3, 50.0, 1e3, 2.0, -0.1, 3.0, 3e3, 9.0)
+            EarlierRow(
+                "both", "fine", 1, "abcdef0", "bcdef01", 400.0, 9e3, 100.0, 2e3, 50.0, 1e3, 2.0, -0.1, 3.0, 3e3, 9.0
+            )
         ],
-        "earlier_pitches": [EarlierPitchRow(0.8, 20, "abcdef0", 90.0, 900.0, 0.01, 30.0, 800.0, 0.005)],
+        "earlier_pitches": [EarlierPitchRow(0.8, 20, "abcdef0", "bcdef01", 90.0, 900.0, 0.01, 30.0, 800.0, 0.005)],
         "wear_cost": [WearCostRow("spur", 1000, 1.0, 2.0, 8.0), WearCostRow("helical", 1000, 9.0, 1.0, 8.0)],
         "wear": [WearPrecisionRow("implicit", 0.05, 10, 0, 2.0, 0.02, -0.01),
                  WearPrecisionRow("explicit", 0.05, 30, 2, 4.0, 0.001, 0.001)],
@@ -90,7 +92,8 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
                    "| a step over a position | 1 | 2 | **0.5** | at most 1.5 | met |",
                    "killed", "**3.00**", "8.00", "whole met, bare missed", "**1 of 2** bars are met",
                    "| a | sharing | 0.20 | 0.1 | MISSED |", "| a | mean | 0.10 |  |  |",
-                   "Commit abcdef0 (*before*)", "| **4.0** | 3 | 50 | **8.0** | 9 | 2.000 | -0.100 | MISSED |",
+                   "Commits abcdef0 (*before*) and bcdef01 (*now*)",
+                   "| **4.0** | 3 | 50 | **8.0** | 9 | 2.000 | -0.100 | MISSED |",
                    "| 0.8 | 90 | 900 | +1.00 | 30 | 800 | +0.50 | **3.0** |",
                    "| long | fine | 1 | 30 | 5 | 6 | 0 | 1 | 12 | 10 | 300 |  | 8.0 |  | MISSED |", "ended after 9 s"):
         assert wanted in text

@@ -108,13 +108,16 @@ def test_all_columns_are_factored_where_iterations_fail(k: int, monkeypatch: pyt
     """GMRES that always fails: the step comes from a matrix that is made of products, exact to rounding; with more
     active unknowns than it may have, an error says so."""
     monkeypatch.setattr(newton_steps, "gmres", lambda times, inverse, right, *_: (np.zeros_like(right), False))
-    T, right = tangent(applied(k), k, friction=1.0), RNG(7).normal(size=N * k + 1)
-    found = NewtonSteps(T.A, T.motions).solve(T, right, 1e-2)
-    same = tangent(DenseCompliance(exact(k), k), k, friction=1.0)
-    assert np.linalg.norm(right - same.times(found)) < 1e-12 * np.linalg.norm(right)
+    T = tangent(applied(k), k, friction=1.0)
+    steps, same = NewtonSteps(T.A, T.motions), tangent(DenseCompliance(exact(k), k), k, friction=1.0)
+    few, every = np.append(T.M @ RNG(7).normal(size=N * k), 3.0), RNG(8).normal(size=N * k + 1)
+    for right in (few, 2.0 * few, every):  # the last has more active unknowns
+        found = steps.solve(T, right, 1e-2)
+        assert np.linalg.norm(right - same.times(found)) < 1e-12 * np.linalg.norm(right)
+    assert k * np.count_nonzero(touching()) < N * k
     monkeypatch.setattr(newton_steps, "MOST_COLUMNS", 2)
     with pytest.raises(NotConverged, match="at most 2 active unknowns"):
-        NewtonSteps(T.A, T.motions).solve(T, right, 1e-2)
+        NewtonSteps(T.A, T.motions).solve(T, few, 1e-2)
 
 
 @pytest.mark.parametrize("resistance", [0.0, 9.0])

@@ -15,7 +15,7 @@ from evidence.benchmarks.gears.skips import differences
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.surface import Surface
-from evolvent.gears.contact.pair_contact import gear_contact
+from evolvent.gears.contact.pair_contact import GearContact, gear_contact
 from evolvent.gears.contact.search_window import placed_flanks
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
@@ -105,6 +105,27 @@ def test_a_converged_search_of_deflected_flanks_stays(bent: GearModel) -> None:
     )
     assert abs(twice - once) < 0.01 * abs(once - before)
     assert abs(float(again.equilibrium.motion[0])) < 0.5 * abs(float(first.equilibrium.motion[0]))
+
+
+def test_whole_deflected_flanks_are_those_of_all_tooth_pairs(
+    bent: GearModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Problem: the window is widened to whole flanks, as flanks overlap outside it. Exact: all tooth pairs are searched
+    as they have deflected, also those without a point in the window before."""
+    shared = shared_position(bent, 0.1, (0.0, 0.0), [0.0], None)
+    searched: list[tuple[list[int], set[int]]] = []
+
+    def seen(bodies: Any, stand: Any, teeth: list[int], half_width: float, displaced: Any) -> GearContact:
+        searched.append((teeth, set(displaced)))
+        return gear_contact(bodies, stand, teeth, half_width, displaced)
+
+    monkeypatch.setattr(deflected_flanks, "gear_contact", seen)
+    whole = replace(shared.contact, geometry=replace(shared.contact.geometry, half_width=np.inf))
+    for contact in (shared.contact, whole):
+        deflected_flanks.deflected_contact(bent, contact, shared.smooth)
+    touching = {int(tooth) for tooth in shared.contact.geometry.tooth}
+    assert touching < set(bent.teeth)
+    assert searched == [(sorted(touching), touching), (list(bent.teeth), set(bent.teeth))]
 
 
 def test_a_search_of_deflected_flanks_that_does_not_converge_is_an_error(

@@ -12,7 +12,7 @@ from evolvent.gears.meshing.flank_levels import LevelledSector
 from evolvent.gears.meshing.sector_sizes import LevelledSize
 from evolvent_meshes.gears.member import Member
 
-POSITION_PER_DOF, POSITION_PER_LEVEL = 3.5e-3, 1300.0
+POSITION_PER_DOF, POSITION_PER_LEVEL = 2.0e-3, 700.0
 """Memory [MB] of corrections and of a position on two ranks: per degree of freedom of both finest flanks, and for each
 level after the first."""
 OWN = 0.5

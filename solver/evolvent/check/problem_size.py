@@ -36,6 +36,9 @@ DENSE_COPIES = 1.65
 """Memory of a run by dimension: constant part, part per degree of freedom, and copies of each dense matrix. Compared
 with 25 runs of 0.2 to 23 GB (Yang's pair of both orders and shapes up to 829,020 degrees of freedom, He's in 3D;
 docs/benchmark.md) the estimate is from 12 % low to 35 % high, from 2 GB on from 12 % low to 20 % high."""
+SELDOM_AT_ONCE = 0.75
+"""Part of the memory of eliminating the coarse sectors of both gears that two ranks take together: each is at its
+largest for a moment (whole runs on flanks in levels, docs/benchmark.md)."""
 MOST_MODES, SQUARES_PER_TOOTH = 300, 6
 """Modes that couple the teeth of a ring (200 in Yang's pair at quick), and square matrices of this size for each tooth
 (`evolvent.gears.ring.ring_modes`): negligible but for hundreds of teeth where far ones are not skipped."""
@@ -103,6 +106,7 @@ def _condensing_megabytes(scene: Scene, ranks: int, sizes: tuple[SectorSize, Sec
     modes = min(MOST_MODES, max(size.cuts for size in sizes))
     ring = far * SQUARES_PER_TOOTH * _square_megabytes(modes)
     if is_two_level(problem):
+        gears *= SELDOM_AT_ONCE if ranks > 1 else 1.0
         sectors = [levelled_sector(problem, member) for member in Member]
         companion = [coarser_levels(sector) for sector in sectors] if wanted_output(scene).error_bars else sectors
         gears = max(gears, levels_megabytes(sectors, ranks), levels_megabytes(companion, ranks))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import nan
@@ -21,11 +21,11 @@ from typing import Any
 from evidence.benchmarks.gears.checkouts import Checkout
 from evidence.benchmarks.gears.pitch import LEVELS, PitchFacts, read_facts
 from evidence.benchmarks.gears.three_teeth import FRICTION
-from evidence.benchmarks.gears.whole_runs import FIRST, HELICAL, LIGHT, ONE, RANKS, SLENDER, YANG
+from evidence.benchmarks.gears.whole_runs import FULL, HELICAL, ONE, RANKS, YANG, RunCase
 from evidence.checkout import DOCS
 from evidence.processes import Cost, run_arguments
-from evidence.scenes import PLAIN, QUIET
-from evidence.tables import Column, Table, write_rows
+from evidence.scenes import QUIET
+from evidence.tables import read_rows, write_rows
 
 COMPILED = "mesh.elements_per_contact_width=0.5", "sweep.positions=2", ONE
 """Settings of a small run, after which the forms of all runs are compiled."""
@@ -35,24 +35,20 @@ COMPILED = "mesh.elements_per_contact_width=0.5", "sweep.positions=2", ONE
 class EarlierCase:
     """A scene that both commits run, and what is wanted of this one."""
 
-    name: str
-    scene: str
-    level: str
-    settings: tuple[str, ...]
+    run: RunCase
     least_ratio: float
     """Seconds of the earlier commit over those with an empty cache."""
     memory_bar_MB: float = nan
-    """Of all ranks at once; NaN where there is none."""
+    """Memory of all ranks at once; NaN where there is no bar."""
     least_filled_ratio: float = nan
     """Seconds of the earlier commit over those with a filled cache; NaN where none is wanted."""
 
 
+_, _, FINE, _, PICTURES, SLENDER_50, SLENDER_10 = FULL
 CASES = (
-    EarlierCase(f"{YANG}, error bars", HELICAL, "standard", (*QUIET, ONE), 3.0, 3e3, 5.7),
-    EarlierCase(f"{YANG}, error bars, pictures", HELICAL, "standard", (), 4.5),
-    EarlierCase(f"{YANG}, plain", HELICAL, "fine", (*PLAIN, ONE), 3.0, 5e3),
-    EarlierCase(f"{LIGHT}, 50 N·m, plain", FIRST, "standard", (*PLAIN, ONE, *SLENDER, "load.torque_Nm=50"), 4.0, 4e3),
-    EarlierCase(f"{LIGHT}, 10 N·m, plain", FIRST, "standard", (*PLAIN, ONE, *SLENDER, "load.torque_Nm=10"), 5.0, 6e3),
+    EarlierCase(RunCase(f"{YANG}, error bars", HELICAL, "standard", (*QUIET, ONE)), 3.0, 3e3, 5.7),
+    EarlierCase(PICTURES, 4.5), EarlierCase(FINE, 3.0, 5e3), EarlierCase(SLENDER_50, 4.0, 4e3),
+    EarlierCase(SLENDER_10, 5.0, 6e3),
 )
 
 
@@ -88,12 +84,12 @@ class EarlierRow:
 
     @property
     def ratio(self) -> float:
-        """Of the earlier commit's time to that with an empty cache."""
+        """Ratio of the earlier commit's time to that with an empty cache."""
         return self.earlier_seconds / self.empty_seconds
 
     @property
     def filled_ratio(self) -> float:
-        """Of the earlier commit's time to that with a filled cache."""
+        """Ratio of the earlier commit's time to that with a filled cache."""
         return self.earlier_seconds / self.filled_seconds
 
     @property
@@ -103,36 +99,24 @@ class EarlierRow:
         return not (slow or max(self.empty_MB, self.filled_MB) > self.memory_bar_MB)
 
 
-TABLE = Table(EarlierRow, (
-    Column("run", "case", words=True), Column("level", "level", words=True), Column("coefficients", "frictions"),
-    Column("before s", "earlier_seconds", ".0f"), Column("MB", "earlier_MB", ".0f"),
-    Column("now s", "empty_seconds", ".0f"), Column("MB", "empty_MB", ".0f"), Column("bar", "memory_bar_MB", ".0f"),
-    Column("times", lambda row: f"**{row.ratio:.1f}**"), Column("bar", "least_ratio", "g"),
-    Column("again s", "filled_seconds", ".0f"), Column("times", lambda row: f"**{row.filled_ratio:.1f}**"),
-    Column("bar", "least_filled_ratio", "g"), Column("peak to peak µm", "peak_to_peak_um", ".3f"),
-    Column("off µm", "peak_to_peak_off_um", "+.3f"),
-    Column("", lambda row: "met" if row.met else "MISSED", words=True),
-))
-
-
 def rows(cases: tuple[EarlierCase, ...], checkout: Path, folder: Path) -> Iterator[EarlierRow]:
     """Runs each case three times. Raises RunFailed."""
     before, now = Checkout.earlier(checkout, folder / "before"), Checkout.this(folder / "now")
     for program, name in ((before, "before"), (now, "now")):
-        _run(program, folder / f"{name}_compiled", CASES[0], *COMPILED)
+        _run(program, folder / f"{name}_compiled", CASES[0].run, *COMPILED)
     for number, case in enumerate(cases):
         now.forget_gears()
-        earlier, first = _run(before, folder / f"{number}_before", case)
-        empty, _ = _run(now, folder / f"{number}_empty", case)
-        filled, last = _run(now, folder / f"{number}_filled", case)
+        earlier, first = _run(before, folder / f"{number}_before", case.run)
+        empty, _ = _run(now, folder / f"{number}_empty", case.run)
+        filled, last = _run(now, folder / f"{number}_filled", case.run)
         yield EarlierRow(
-            case.name, case.level, len(last["frictions"]), before.commit, now.commit, earlier.wall, earlier.memory_MB,
-            empty.wall, empty.memory_MB, filled.wall, filled.memory_MB, _peak_to_peak(last),
+            case.run.name, case.run.level, len(last["frictions"]), before.commit, now.commit, earlier.wall,
+            earlier.memory_MB, empty.wall, empty.memory_MB, filled.wall, filled.memory_MB, _peak_to_peak(last),
             _peak_to_peak(first) - _peak_to_peak(last), case.least_ratio, case.memory_bar_MB, case.least_filled_ratio,
         )
 
 
-def _run(program: Checkout, out: Path, case: EarlierCase, *settings: str) -> tuple[Cost, dict[str, Any]]:
+def _run(program: Checkout, out: Path, case: RunCase, *settings: str) -> tuple[Cost, dict[str, Any]]:
     """What a run took, and its summary. Raises RunFailed."""
     words = run_arguments(case.scene, out, (f"mesh.level={case.level}", *case.settings, *settings))
     cost = program.run(out.with_suffix(".log"), "evolvent", "run", *words, ranks=RANKS)
@@ -164,12 +148,6 @@ class EarlierPitchRow:
     error: float
 
 
-PITCH_TABLE = Table(EarlierPitchRow, (
-    Column("elements across 2b", "elements", "g"), Column("before s", "earlier_seconds", ".0f"),
-    Column("MB", "earlier_MB", ".0f"), Column("error %", "earlier_error", "+.2%"), Column("now s", "seconds", ".0f"),
-    Column("MB", "memory_MB", ".0f"), Column("error %", "error", "+.2%"),
-    Column("times", lambda row: f"**{row.earlier_seconds / row.seconds:.1f}**"),
-))
 ELEMENTS, OVERKILL, POSITIONS = (0.8, 1.2, 1.7, 3.75), 1.9, 20
 """Elements across 2b in levels, and those of one mesh with which errors are measured."""
 
@@ -206,11 +184,12 @@ def main() -> None:
     parser.add_argument("--pitches", action="store_true", help="pitches on one rank in place of whole runs")
     parser.add_argument("--out", type=Path, default=DOCS)
     given = parser.parse_args()
-    wanted = tuple(case for case in CASES if given.case in f"{case.name}, {case.level}")
+    wanted = tuple(case for case in CASES if given.case in f"{case.run.name}, {case.run.level}")
     measure = partial(pitch_rows, ELEMENTS) if given.pitches else partial(rows, wanted)
-    table, name = (PITCH_TABLE, "earlier_pitches") if given.pitches else (TABLE, "earlier")
-    path = given.out / "benchmark" / f"{name}.csv"
-    measured = {_key(row): row for row in table.read(path)}
+    path = given.out / "benchmark" / f"earlier{'_pitches' if given.pitches else ''}.csv"
+    kept: Sequence[EarlierRow | EarlierPitchRow]
+    kept = read_rows(path, EarlierPitchRow) if given.pitches else read_rows(path, EarlierRow)
+    measured = {_key(row): row for row in kept}
     with tempfile.TemporaryDirectory() as folder:
         for row in measure(given.checkout.resolve(), Path(folder)):
             measured[_key(row)] = row

@@ -74,8 +74,10 @@ def unsearched_overlaps(geometry: ContactGeometry, teeth: tuple[int, ...]) -> tu
     Only flanks that overlap undeformed are checked, or that a rotation of up to NEARLY can bring to overlap: loaded
     teeth deflect, so that flanks apart from the contact move away from each other. And only slices whose contact line
     is off the path of contact: on it conjugate flanks are closest in the window, unless modifications are so steep that
-    they move the contact out of it. Raises SearchError.
+    they move the contact out of it. None where whole flanks were searched. Raises SearchError.
     """
+    if np.isinf(geometry.half_width):
+        return ()
     overlaps = []
     for tooth in teeth:
         flanks = placed_flanks(geometry.bodies, geometry.stand, tooth)
@@ -126,8 +128,6 @@ def _unsearched_pairs(
 ) -> Pairing | None:
     """Points that the window leaves out with partners near them: in slices off the path of contact, and as far beside
     the window as steep modifications may move the contact. None where the window leaves nothing out."""
-    if np.isinf(geometry.half_width):
-        return None
     pinion, wheel = geometry.bodies
     reach, depth = NEARLY * pinion.gear.normal_module, PENETRATION * pinion.gear.normal_module
     moved = farthest_moved(geometry.stand.pair)

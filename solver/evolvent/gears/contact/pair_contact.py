@@ -97,6 +97,12 @@ class GearContact:
         return deepest > 0.9 * PENETRATION * self.stand.pair.pinion.normal_module
 
 
+def overlaps_too_deep(stand: PairRotation) -> bool:
+    """Whether conjugate flanks overlap deeper there than the search looks, which would find them nowhere."""
+    normal = abs(stand.transmission_error) * np.cos(stand.pair.pinion.base_helix_angle)
+    return bool(normal > PENETRATION * stand.pair.pinion.normal_module)
+
+
 def gear_contact(
     bodies: tuple[GearBody, GearBody], stand: PairRotation, teeth: list[int], half_width: float,
     displaced: Mapping[int, Displaced] = MappingProxyType({}),

@@ -144,8 +144,18 @@ def test_overlap_as_deep_as_the_deflection_is_searched(deep: GearModel, monkeypa
     with pytest.raises(NotConverged, match="found none"):
         loaded(TIMES)
     monkeypatch.undo()
-    with pytest.raises(NotConverged, match="lower the torque"):
+    with pytest.raises(NotConverged, match="deflect by less than half a module"):
         loaded(2.0 * TIMES)
+
+
+def test_flanks_turned_into_each_other_by_more_than_half_a_module_are_not_searched(deep: GearModel) -> None:
+    """Problem: the wheel turned into the pinion by 0.49 and 0.51 modules of normal distance, beyond what any search
+    pairs. Exact: the second is refused as too deep, before a search that would find no flanks within reach."""
+    module, wheel = deep.pair.pinion.normal_module, deep.pair.wheel
+    per_module = module / wheel.base_radius / np.cos(wheel.base_helix_angle)
+    assert not pair_contact.overlaps_too_deep(PairRotation(deep.pair, 0.0, (0.0, 0.49 * per_module)))
+    with pytest.raises(NotConverged, match="deflect by less than half a module"):
+        shared_position(deep, 0.0, (0.0, 0.51 * per_module), [0.0], None)
 
 
 def test_contact_that_steep_modifications_move_out_of_the_window_is_found() -> None:

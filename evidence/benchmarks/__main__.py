@@ -1,8 +1,8 @@
 """`python -m evidence.benchmarks [PART] [--peers] [--small] [--out DIR]`: measures, writes the page docs/benchmark.md.
 
-PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, excitation-bars, root-bars, spacing, wear,
-dynamics, transient, level-sizes, two-level, beside, runs, all (the default), or page, which measures nothing. Tables
-are kept in docs/benchmark/, figures in docs/pictures/benchmark/.
+PART: hertz2d, hertz3d, gears, pitches, ratios, sizes, profile, skips, spur, bars, excitation-bars, root-bars, spacing,
+wear, dynamics, transient, level-sizes, two-level, beside, runs, all (the default), or page, which measures nothing.
+Tables are kept in docs/benchmark/, figures in docs/pictures/benchmark/.
 --small takes sizes that show that everything works; give it another --out.
 """
 
@@ -62,10 +62,6 @@ class Measurement:
         peers = [program for program in self.peers if program.name not in WITHOUT_GEARS]
         yield "gears", position_cost.rows(peers, self.size(position_cost), self.folder)
 
-    def scaling(self) -> Tables:
-        yield "ratios", scaling.ratio_rows(self.size(scaling), self.folder)
-        yield "sizes", scaling.size_rows(self.size(scaling), self.folder)
-
     def profile(self) -> Tables:
         for name, case in self.size(profile).items():
             yield name, profile.rows(case, self.folder)
@@ -106,7 +102,8 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "hertz3d": lambda given: given.round_contact("hertz3d"),
     "gears": Measurement.gears,
     "pitches": _table("pitches", lambda given: pitch_precision.rows(given.size(pitch_precision), given.folder)),
-    "scaling": Measurement.scaling,
+    "ratios": _table("ratios", lambda given: scaling.ratio_rows(given.size(scaling), given.folder)),
+    "sizes": _table("sizes", lambda given: scaling.size_rows(given.size(scaling), given.folder)),
     "profile": Measurement.profile,
     "skips": _table("skips", lambda given: skips.rows(skips.CASES[:1] if given.small else skips.CASES)),
     "spur": _table("spur", lambda given: plane_and_solid.rows()),

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from evidence.benchmarks.gears.checkouts import Checkout
 from evidence.benchmarks.measuring import keep_rows
 from evidence.checkout import ROOT
 from evidence.scenes import HELICAL, PLAIN, SPUR
@@ -60,8 +61,7 @@ def kept_row(name: str, scene: Path, settings: tuple[str, ...]) -> KeptRow:
         own = Path(folder) / "evolvent" / "condensed"
         for small in (SPUR, HELICAL):  # compiles the forms
             _seconds(folder, small, "mesh.level=quick", "mesh.elements_per_contact_width=0.5")
-        for path in own.iterdir():
-            path.unlink()
+        Checkout.this(Path(folder)).forget_gears()
         empty, filled = (_seconds(folder, scene, *settings) for _ in range(2))
         return KeptRow(name, empty, filled, 1e-6 * sum(path.stat().st_size for path in own.iterdir()))
 

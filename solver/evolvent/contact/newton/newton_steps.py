@@ -22,7 +22,7 @@ from evolvent.contact.newton.jump_compliance import ActiveCompliance, Inverse, J
 from evolvent.contact.newton.krylov import gmres
 from evolvent.contact.newton.reduced_tangent import FreeMotions, ReducedTangent
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.newton.tangent import Tangent
+from evolvent.contact.newton.tangent import Tangent, refined
 from evolvent_meshes.arrays import Floats, Ints, Reals
 
 SINGLE = 1e-4  # relative accuracy that single precision always reaches
@@ -130,11 +130,7 @@ class NewtonSteps:
             )
         M, motions = tangent.M[own][:, own], self.motions.of(own, float)
         inverse = ReducedTangent.of(M, self._active_matrix(), motions, np.arange(len(own)))
-        y = np.zeros(size)
-        for _ in range(2):  # f = b − M z loses digits: one refinement
-            residual = right - tangent.times(y)
-            y = y + self._active.extend(inverse.solve(residual[rows]), size)
-        return y
+        return refined(lambda b: self._active.extend(inverse.solve(b[rows]), size), tangent.times, right)
 
     def _active_matrix(self) -> Floats:
         """A (u, u) between the active unknowns [mm/N], column by column; kept until there are more of them."""

@@ -14,6 +14,7 @@ tangent.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,9 +72,16 @@ class Tangent:
         """T⁻¹ right, (m + r,), with all columns, where A is a matrix. Raises NotConverged where T is singular."""
         assert self.A.matrix is not None
         inverse = ReducedTangent.of(self.M, self.A.matrix, self.motions, np.flatnonzero(_columns(self.M)))
-        first: Floats = inverse.solve(right)
-        second: Floats = inverse.solve(right - self.times(first))  # f = b − M z loses digits: one refinement
-        return first + second
+        return refined(inverse.solve, self.times, right)
+
+
+def refined(solve: Callable[[Floats], Floats], times: Callable[[Floats], Floats], right: Floats) -> Floats:
+    """T⁻¹ right with one refinement: f = b − M z loses digits.
+
+    solve, times: products with an approximate T⁻¹, and with T.
+    """
+    first = solve(right)
+    return first + solve(right - times(first))
 
 
 def _columns(M: sp.csr_matrix) -> Bools:

@@ -19,7 +19,7 @@ from evidence import report
 from evidence.checkout import DOCS
 from evidence.claims import Claim
 from evidence.robustness.campaigns import drive_summaries, summaries
-from evidence.robustness.campaigns.campaign import DRIVES, LEVELS, SCENES, WEAR, Trial, campaign, solve_seeds
+from evidence.robustness.campaigns.campaign import DRIVES, LEVELS, SCENES, WEAR, Trial, all_outcomes, solve_seeds
 from evidence.robustness.faults import fault_claims
 from evidence.robustness.malformed.summary import malformed_summary
 from evidence.robustness.malformed.trials import Verdict, outcomes, trials
@@ -35,7 +35,7 @@ INTRODUCTION = """What happens at the edge of what can be asked: every setting o
 sense, random gear pairs that pass validation, and the method's own parameters. A cell that says "refused" ended with a
 message and no result; what was refused is listed below its figure."""
 PICTURES = "pictures/stress"
-COUNTS = {SCENES.command: 500, LEVELS.command: 40, WEAR.command: 100, DRIVES.command: 200}
+COUNTS = {SCENES.command: 500, LEVELS.command: 100, WEAR.command: 100, DRIVES.command: 200}
 CLAIMS = Table(
     Claim,
     (
@@ -96,7 +96,7 @@ def _outcomes(trial: Trial) -> list[Any]:
     outcomes: list[Any] = []
     count = COUNTS[trial.command]
     try:
-        for outcome in campaign(0, count, trial=trial):
+        for outcome in all_outcomes(count, trial):
             outcomes.append(outcome)
             print(outcome.seed, outcome.verdict.value, outcome.line, flush=True)
     except KeyboardInterrupt:

@@ -1,17 +1,19 @@
-"""Random scenes, wear studies or drives by the hundred, one after the other in a process that may crash or hang.
+"""Random scenes, wear studies or drives by the hundred, one after the other in processes that may crash or hang.
 
-The process writes one line of JSON a seed. It is killed where a seed takes too long, and started again with the next.
+A process writes one line of JSON a seed. It is killed where a seed takes too long, and started again with the next.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from enum import Enum
 from queue import Empty, Queue
-from threading import Thread
+from threading import Event, Thread
 from typing import Any
 
 from evidence.processes import environment, module_run
@@ -26,6 +28,9 @@ from evolvent.fem.backend import dolfinx_compat
 PATIENCE = 900.0
 """Seconds after which a seed has hung. Nearly all take one to twenty; 206, a wide plastic pair whose friction history
 lasts thirteen pitches, before and after deflection, takes 250 on a core of its own."""
+
+CHUNK = 10
+"""Seeds that one process after the other is started with."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,31 @@ def solve_seeds(trial: Trial, first: int, count: int) -> None:
     for seed in range(first, first + count):
         outcome = trial.solve(seed)
         print(json.dumps({**asdict(outcome), "verdict": outcome.verdict.name}), flush=True)
+
+
+def all_outcomes(count: int, trial: Trial) -> Iterator[Any]:
+    """The outcomes of the seeds 0 to count − 1 in order, as many processes at a time as there are cores."""
+    ended = Event()
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        chunks = [
+            pool.submit(_chunk, first, min(CHUNK, count - first), trial, ended) for first in range(0, count, CHUNK)
+        ]
+        try:
+            for chunk in chunks:
+                yield from chunk.result()
+        finally:  # Control-C ends the processes too
+            ended.set()
+            for chunk in chunks:
+                chunk.cancel()
+
+
+def _chunk(first: int, count: int, trial: Trial, ended: Event) -> list[Any]:
+    found = []
+    for outcome in campaign(first, count, trial=trial):
+        found.append(outcome)
+        if ended.is_set():
+            break
+    return found
 
 
 def campaign(first: int, count: int, patience: float = PATIENCE, trial: Trial = SCENES) -> Iterator[Any]:

@@ -110,6 +110,20 @@ def test_campaign_survives_a_crash_and_a_hang(monkeypatch: pytest.MonkeyPatch) -
     assert verdicts == [good, good, Verdict.CRASHED, good, Verdict.HUNG, good]
 
 
+def test_outcomes_of_several_processes_come_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seven seeds in chunks of three, of which the first take longest: each outcome once, in order."""
+    slow_first = (
+        "import sys, json, time; first, n = int(sys.argv[-2]), int(sys.argv[-1])\n"
+        "for seed in range(first, first + n):\n"
+        "    time.sleep(0.2 if first == 0 else 0.0)\n"
+        "    print(json.dumps({'seed': seed, 'verdict': 'CONVERGED'}), flush=True)\n"
+    )
+    monkeypatch.setattr(campaign, "CHUNK", 3)
+    words = (sys.executable, "-c", slow_first)
+    monkeypatch.setattr(campaign, "module_run", lambda _, __, *range_: (*words, *map(str, range_)))
+    assert [o.seed for o in campaign.all_outcomes(7, campaign.SCENES)] == list(range(7))
+
+
 def test_scene_summary_counts_every_outcome() -> None:
     """Every outcome is counted, and every bad one has its line."""
     good = replace(outcome_of(random_scene(41, plane=True), 41), seed=0)

@@ -24,8 +24,9 @@ CONTINUED = 0.1
 image of its tip."""
 INWARDS = 0.1
 """How far inside the edges of the wheel's flank partners are looked for at first, in modules."""
-ROUNDS = 6
-"""Steps from cell to cell in which a partner is looked for."""
+ROUNDS = 20
+"""Steps from cell to cell in which a partner is looked for: deflection by a third of a module moves it by more than six
+cells."""
 
 
 @dataclass(frozen=True)
@@ -108,14 +109,14 @@ def pair_at_lattice(
     """
     faced = faced_points(lattice.line, lattice.point_arc, lattice.point_z, surfaces)
     weight, gap = lattice.weights * faced.pairing.weight, faced.pairing.gap
-    missing = np.flatnonzero(~faced.found & faced.inner)
+    missing = np.flatnonzero(~faced.found & faced.inner & faced.inside)  # others were followed beyond the wheel's edges
     away = lattice.line.distance(lattice.point_arc[missing], lattice.point_z[missing], surfaces)
     lost = float(np.sum(weight[missing[away < max_gap]]))
     reached = lost + float(np.sum(weight[faced.found & faced.inner & (gap < max_gap)]))
     if lost > ALLOWED_LOSS * reached:
         raise SearchError(
             f"contact: wanted partners on the wheel's flank for all but {ALLOWED_LOSS} of the pinion's in reach, none "
-            f"found for {lost:.3e} of {reached:.3e} mm²; refine the mesh"
+            f"found for {lost:.3e} of {reached:.3e} mm²; refine the mesh or lower the torque"
         )
     kept = faced.found & faced.inside & (gap >= -max_overlap) & (gap <= max_gap)
     return replace(faced.pairing, weight=weight, lost=lost).of(kept), kept

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from evolvent.contact.nitsche.contact_operator import ContactOperator, contact_operator
-from evolvent.contact.search.pairing import Pairing, pair_surfaces
+from evolvent.contact.search.pairing import Pairing, SearchError, pair_surfaces
 from evolvent.fem.nodal_frames import tangent_frames
+from evolvent.fem.surface import Surface
+from evolvent.gears.contact import lattice_pairing
 from evolvent.gears.contact.contact_lattice import ContactLattice
 from evolvent.gears.contact.lattice_pairing import jump_space, pair_at_lattice, with_wheel_edges
 from evolvent_meshes.arrays import Bools
@@ -51,6 +53,31 @@ def test_gap_on_the_line_is_that_of_the_facets() -> None:
     assert np.quantile(ratio, 0.9) < 2.0 * np.quantile(ratio, 0.1)
 
 
+def moved_to_its_tip(wheel: Surface, distance: float) -> Surface:
+    """The wheel's flank displaced by a distance [mm] along its profile."""
+    across = wheel.points - line(0).stand.centre(Member.WHEEL, 3)
+    along = np.cross([0.0, 0.0, 1.0], wheel.normals)
+    along *= np.sign(np.einsum("na,na->n", along, across))[:, None] / np.linalg.norm(along, axis=1)[:, None]
+    return wheel.displaced(distance * along)
+
+
+@pytest.mark.parametrize("moved", [1.0, -1.0])
+def test_partners_many_cells_away_are_found(moved: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: the wheel's flank displaced along its profile by 1 mm, eight rows. Exact: of the points about the line
+    those that still face it, over four fifths, are on the normals of the pinion; none is lost. Within six steps from
+    cell to cell none would be found, which is said."""
+    lattice, (first, second) = paired(0)[0], placed(0)
+    there = first, moved_to_its_tip(second, moved)
+    pairing, kept = pair_at_lattice(lattice, there, GAP, OVERLAP)
+    x1, n = (first.evaluate(v, pairing.facet1, pairing.xi1[:, None])[0][:, 0] for v in (first.points, first.normals))
+    x2 = there[1].positions(pairing.facet2, pairing.xi2[:, None])[:, 0]
+    assert np.cross(x2 - x1, n) == pytest.approx(0.0, abs=1e-8)
+    assert pairing.lost == 0.0 and 0.8 < kept.mean() < 0.95
+    monkeypatch.setattr(lattice_pairing, "ROUNDS", 6)
+    with pytest.raises(SearchError, match="refine the mesh or lower the torque"):
+        pair_at_lattice(lattice, there, GAP, OVERLAP)
+
+
 def test_edges_of_the_wheel_move_with_its_flank() -> None:
     """Problem: the wheel's flank displaced by 0.05 mm along its profile, towards its tip. Exact: its edges face places
     that lie 0.05 mm nearer to the pinion's root than without, within 1 mm of contact lines up to half a per cent,
@@ -59,11 +86,8 @@ def test_edges_of_the_wheel_move_with_its_flank() -> None:
     near, moved, z = 0, 0.05, np.linspace(-7.0, 7.0, 141)
     for tooth in TEETH:
         (first, second), nominal = placed(tooth), line(tooth)
-        across = second.points - nominal.stand.centre(Member.WHEEL, 3)
-        along = np.cross([0.0, 0.0, 1.0], second.normals)
-        along *= np.sign(np.einsum("na,na->n", along, across))[:, None] / np.linalg.norm(along, axis=1)[:, None]
         there = with_wheel_edges(nominal, (first, second))
-        displaced = with_wheel_edges(nominal, (first, second.displaced(moved * along)))
+        displaced = with_wheel_edges(nominal, (first, moved_to_its_tip(second, moved)))
         own, ξ = nominal.flanks[Member.PINION].arc, nominal.stand.roll_distance(tooth, z)
         start, end = nominal.stand.pair.path_of_contact
         for before, found, after in zip(*(each.edges_of_wheel(z) for each in (nominal, there, displaced))):

@@ -41,6 +41,9 @@ LAYER_DEPTHS = np.array([0.57, 0.86, 1.26])
 """Thin layers below the flank in half-widths b_H; measured as enough for 3 elements across 2b_H."""
 DEEPEST = 0.35
 """Largest depth of the thin layers together, in modules: deeper, they don't fit into the root under a heavy load."""
+THIN_TIP, LEAST_DEEP = 0.2, 0.5
+"""Tip thickness [normal modules] below which layers reach in proportion less deep, and down to which part: tips of 0.07
+and 0.09 modules have cells of scaled Jacobians below 0.1 over layers of `DEEPEST`, of more over half of that."""
 LEAST_NECK = 3
 NECK = 0.8
 """Cells from the flank start to the middle of the fillet, and how many modules they cover at most: they grow from the
@@ -102,7 +105,7 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
         line = _line_resolution(problem, member)
         return _fine_everywhere(line) if problem.options.fine_body else line
     gear, level, needs = problem.pair.gears[member], problem.mesh.level, flank_needs(problem, member)
-    depths = needs.depths * min(1.0, DEEPEST * gear.normal_module / float(needs.depths.sum()))
+    depths = needs.depths * min(1.0, float(deepest_layers(gear).sum() / needs.depths.sum()))
     rows = 3 * max(LEAST_ROWS, math.ceil(needs.rows / 3))
     layers = max(LEAST_LAYERS[level], math.ceil(needs.shear / SHEAR_PER_ELEMENT[level][member]))
     below = _below_flank(problem, depths, gear.normal_module)
@@ -115,7 +118,7 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
 def _line_resolution(problem: GearProblem, member: Member) -> SectorResolution:
     """The resolution of a sector for line contact, which does not depend on the torque."""
     gear, active = problem.pair.gears[member], problem.pair.active_start_diameters[member]
-    depths = LAYER_DEPTHS * DEEPEST * gear.normal_module / float(LAYER_DEPTHS.sum())
+    depths = deepest_layers(gear)
     layers = math.ceil(gear.face_width / (LINE_LAYER * gear.normal_module))
     return replace(
         _below_flank(problem, depths, gear.normal_module),
@@ -126,6 +129,13 @@ def _line_resolution(problem: GearProblem, member: Member) -> SectorResolution:
         size_at=ContactWidth(mesh_estimate(problem), member),
         graded_middles=True,
     )
+
+
+def deepest_layers(gear: GearParameters) -> Floats:
+    """Thickness (3,) of the thin layers below a flank that the tooth has room for at its root and its tip [mm]."""
+    tip = gear.normal_thickness(gear.tip_diameter) / (THIN_TIP * gear.normal_module)
+    whole = LAYER_DEPTHS * DEEPEST * gear.normal_module / float(LAYER_DEPTHS.sum())
+    return np.asarray(whole * min(1.0, max(LEAST_DEEP, tip)))
 
 
 def _below_flank(problem: GearProblem, depths: Floats, module: float) -> SectorResolution:

@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.gears.meshing.element_sizes import (
-    DEEPEST,
-    LAYER_DEPTHS,
     LEAST_LAYERS,
     LEAST_ROWS,
     FlankNeeds,
+    deepest_layers,
     flank_needs,
     sector_resolution,
 )
@@ -81,7 +80,7 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     # a companion has half of them
     fewest = max(coarsest, 2 * fewest_layers(gear), math.ceil(shortest / math.prod(factors[:-1])))
     layers = max(fewest, math.ceil(wanted / math.prod(factors)))
-    depths = LAYER_DEPTHS * DEEPEST * gear.normal_module / float(LAYER_DEPTHS.sum())
+    depths = deepest_layers(gear)
     coarse = replace(
         resolution, profile_elements=rows, face_elements=layers, end_size_ratio=1.0,
         graded_middles=True,

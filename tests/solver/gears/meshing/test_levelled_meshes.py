@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.fem.surface import surface_of
 from evolvent.gears.meshed_gear import meshed_gear
-from evolvent.gears.meshing import levelled_meshes
+from evolvent.gears.meshing import element_sizes, levelled_meshes
 from evolvent.gears.meshing.levelled_meshes import (
     flank_cells,
     has_long_cells,
@@ -21,12 +22,13 @@ from evolvent.gears.meshing.levelled_meshes import (
 )
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.gears.problem.gear_problem import GearOptions, GearProblem, MeshSettings
+from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from tests.support.meshes.modified_gears import fully_modified
 from tests.support.meshes.sector_cases import ROUNDING
 from tests.support.paper_pairs import yang
@@ -134,3 +136,17 @@ def test_one_mesh_is_its_own_flank() -> None:
     gear = meshed_gear(own, Member.WHEEL)
     assert isinstance(run_mesh(own, Member.WHEEL), MeshData) and not gear.has_levels
     assert np.array_equal(gear.flank.nodes, surface_of(gear.mesh, "flank").nodes)
+
+
+@pytest.mark.parametrize(("seed", "member"), [(73, Member.PINION), (75, Member.WHEEL)])
+def test_pointed_teeth_are_meshed(seed: int, member: Member, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tips 0.07 and 0.09 modules thick: layers below them that reach half as deep leave cells of good quality, those of
+    other teeth do not."""
+    problem = gear_problem(random_scene(seed, plane=False))
+    problem = replace(problem, mesh=MeshSettings("quick", two_level=True))
+    gear = problem.pair.gears[member]
+    assert gear.normal_thickness(gear.tip_diameter) < 0.1 * gear.normal_module
+    levelled_mesh(problem, member)
+    monkeypatch.setattr(element_sizes, "LEAST_DEEP", 1.0)
+    with pytest.raises(MeshError, match="mesh quality"):
+        levelled_mesh(problem, member)

@@ -101,7 +101,7 @@ def test_forces_on_curved_flanks_cancel(
         teeth = [replace(t, operator=replace(t.operator, jump2=Π)) for t, Π in zip(geometry.teeth, lossy)]
         return replace(contact, geometry=replace(geometry, teeth=tuple(teeth)))
 
-    monkeypatch.setattr(position_search, "gear_contact", with_result(position_search.gear_contact, leaking))
+    monkeypatch.setattr(position_search, "facing_flanks", with_result(position_search.facing_flanks, leaking))
     assert fails(lambda: forces_cancel(model))
 
 

@@ -15,7 +15,7 @@ from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_step import SearchedContact
-from evolvent.gears.contact.pair_contact import gear_contact
+from evolvent.gears.contact.pair_contact import facing_flanks
 from evolvent.gears.kinematics import PairRotation
 
 REACH = 1e-3
@@ -125,17 +125,11 @@ class KeptContacts:
     def _searched(self, phase: float, multiple: int, half_width: float) -> SearchedContact:
         model, angle, ψ = self.pair.model, phase * self.step_angle, multiple * self._spacing
         stand = PairRotation(model.pair, angle, self.pair.drive.rotations(ψ))
-        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
-        if not contact.geometry.teeth:
-            raise NotConverged(
-                f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none; the pair "
-                "may be thrown apart further than the search looks: give it more damping or another speed"
-            )
-        if contact.too_deep:
-            raise NotConverged(
-                f"pinion at {np.degrees(angle):.3f}°: wanted teeth that deflect by less than half a module, found "
-                "more, too much for small strain: lower the torque, or give more damping"
-            )
+        contact = facing_flanks(
+            model.bodies, stand, list(model.teeth), half_width,
+            "the pair may be thrown apart further than the search looks: give it more damping or another speed",
+            "lower the torque, or give more damping",
+        )
         return SearchedContact.of(self.pair, contact, ψ, self.components)
 
     @property

@@ -17,6 +17,7 @@ import numpy as np
 
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.jump_compliance import JumpCompliance
+from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.condensed_gear import GearBody
@@ -97,10 +98,30 @@ class GearContact:
         return deepest > 0.9 * PENETRATION * self.stand.pair.pinion.normal_module
 
 
-def overlaps_too_deep(stand: PairRotation) -> bool:
-    """Whether conjugate flanks overlap deeper there than the search looks, which would find them nowhere."""
-    normal = abs(stand.transmission_error) * np.cos(stand.pair.pinion.base_helix_angle)
-    return bool(normal > PENETRATION * stand.pair.pinion.normal_module)
+def facing_flanks(
+    bodies: tuple[GearBody, GearBody], stand: PairRotation, teeth: list[int], half_width: float, apart: str,
+    remedy: str,
+) -> GearContact:
+    """Flanks within reach of each other at this stand, of `gear_contact`; see there for what it takes.
+
+    apart: why there may be none, and what to do then.
+    remedy: what to do where they overlap deeper than the search looks.
+
+    Raises NotConverged, SearchError.
+    """
+    at = f"pinion at {np.degrees(stand.angle):.3f}°: wanted"
+    too_deep = NotConverged(
+        f"{at} teeth that deflect by less than half a module, found more, too much for small strain: {remedy}"
+    )
+    overlap = stand.transmission_error * np.cos(stand.pair.pinion.base_helix_angle)  # of conjugate flanks
+    if overlap > PENETRATION * stand.pair.pinion.normal_module:
+        raise too_deep
+    contact = gear_contact(bodies, stand, teeth, half_width)
+    if not contact.geometry.teeth:
+        raise NotConverged(f"{at} flanks within reach of each other, found none; {apart}")
+    if contact.too_deep:
+        raise too_deep
+    return contact
 
 
 def gear_contact(

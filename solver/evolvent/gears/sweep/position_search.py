@@ -20,7 +20,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.overlap_check import UnsearchedOverlap, overlap_outside, unsearched_overlaps
-from evolvent.gears.contact.pair_contact import TOLERANCE, GearContact, gear_contact, overlaps_too_deep
+from evolvent.gears.contact.pair_contact import TOLERANCE, GearContact, facing_flanks, gear_contact
 from evolvent.gears.contact.tangent_stiffness import tangent_stiffness
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import PairRotation
@@ -138,7 +138,10 @@ def shared_position(
     for _ in range(ROUNDS):
         nearest = NEAREST_AGAIN if stand.beyond_nominal in been else NEAREST
         been.add(stand.beyond_nominal)
-        contact = _facing_flanks(model, stand, half_width)
+        contact = facing_flanks(
+            model.bodies, stand, list(model.teeth), half_width,
+            "the load may bend the teeth further than the search looks: lower the torque", "lower the torque",
+        )
         system = contact.system(model.load.on, model.load.at(angle), normal_only, threads)
         pressed = partial(_initially_pressed, contact.geometry, before, guess)
         near = known.smooth if known is not None else _on_same_nodes(last, contact.geometry)
@@ -160,26 +163,6 @@ def shared_position(
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )
-
-
-def _facing_flanks(model: GearModel, stand: PairRotation, half_width: float) -> GearContact:
-    """The flanks that face each other where the gears stand. Raises NotConverged, SearchError."""
-    at = f"pinion at {np.degrees(stand.angle):.3f}°:"
-    too_deep = NotConverged(
-        f"{at} wanted teeth that deflect by less than half a module, found more, too much for small strain: lower the "
-        "torque"
-    )
-    if overlaps_too_deep(stand):
-        raise too_deep
-    contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
-    if not contact.geometry.teeth:
-        raise NotConverged(
-            f"{at} wanted flanks within reach of each other, found none; the load may bend the teeth further than the "
-            "search looks: lower the torque"
-        )
-    if contact.too_deep:
-        raise too_deep
-    return contact
 
 
 def without_overlaps(model: GearModel, position: SharedPosition) -> SharedPosition | None:

@@ -51,14 +51,14 @@ def test_tangent_stiffness_is_that_of_two_loads() -> None:
 def test_flanks_are_searched_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each torque's displacement is predicted from the lighter one's: after the first position, where nothing is known
     of the second differences, at most one of four torques wants a second search."""
-    count, search = 0, position_search.gear_contact
+    count, search = 0, position_search.facing_flanks
 
     def counted(*args: Any) -> GearContact:
         nonlocal count
         count += 1
         return search(*args)
 
-    monkeypatch.setattr(position_search, "gear_contact", counted)
+    monkeypatch.setattr(position_search, "facing_flanks", counted)
     loaded_mesh(model(), TORQUES.tolist(), ANGLES[:1])
     first = count
     loaded_mesh(model(), TORQUES.tolist(), ANGLES)

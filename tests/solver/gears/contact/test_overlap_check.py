@@ -153,9 +153,11 @@ def test_flanks_turned_into_each_other_by_more_than_half_a_module_are_not_search
     pairs. Exact: the second is refused as too deep, before a search that would find no flanks within reach."""
     module, wheel = deep.pair.pinion.normal_module, deep.pair.wheel
     per_module = module / wheel.base_radius / np.cos(wheel.base_helix_angle)
-    assert not pair_contact.overlaps_too_deep(PairRotation(deep.pair, 0.0, (0.0, 0.49 * per_module)))
-    with pytest.raises(NotConverged, match="deflect by less than half a module"):
-        shared_position(deep, 0.0, (0.0, 0.51 * per_module), [0.0], None)
+    for share, searches in ((0.49, 1), (0.51, 0)):
+        with patch.object(pair_contact, "gear_contact", side_effect=pair_contact.gear_contact) as search:
+            with pytest.raises(NotConverged, match="deflect by less than half a module"):
+                shared_position(deep, 0.0, (0.0, share * per_module), [0.0], None)
+            assert search.call_count == searches
 
 
 def test_contact_that_steep_modifications_move_out_of_the_window_is_found() -> None:

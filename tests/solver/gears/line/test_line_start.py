@@ -114,7 +114,7 @@ def test_search_is_made_once_and_wide_enough(monkeypatch: pytest.MonkeyPatch) ->
     """Problem: a window of half of the contact's width, which fits when it was widened twice. With the start the flanks
     are searched once, in the window that is found in some searches without it."""
     model = replace(spur(*RELIEVED), half_width=0.6 * start_of(spur(*RELIEVED)).reach)
-    searches = counted(monkeypatch, "gear_contact")
+    searches = counted(monkeypatch, "facing_flanks")
     wanted = position(without(model))
     assert len(searches) > 2
     searches.clear()

@@ -58,12 +58,12 @@ TABLE = Table(KeptRow, (
 def kept_row(name: str, scene: Path, settings: tuple[str, ...]) -> KeptRow:
     """The row of a pair."""
     with tempfile.TemporaryDirectory() as folder:
-        own = Path(folder) / "evolvent" / "condensed"
+        own = Checkout.this(Path(folder))
         for small in (SPUR, HELICAL):  # compiles the forms
             _seconds(folder, small, "mesh.level=quick", "mesh.elements_per_contact_width=0.5")
-        Checkout.this(Path(folder)).forget_gears()
+        own.forget_gears()
         empty, filled = (_seconds(folder, scene, *settings) for _ in range(2))
-        return KeptRow(name, empty, filled, 1e-6 * sum(path.stat().st_size for path in own.iterdir()))
+        return KeptRow(name, empty, filled, 1e-6 * sum(path.stat().st_size for path in own.condensed.iterdir()))
 
 
 def _seconds(folder: str, scene: Path, *settings: str) -> float:

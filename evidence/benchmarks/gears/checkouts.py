@@ -39,9 +39,14 @@ class Checkout:
         variables = {"PYTHONPATH": python_path(self.root), "XDG_CACHE_HOME": str(self.cache), "EVOLVENT_CACHE_GB": "20"}
         return run(Command(words, self.root, log, variables, ranks, TIME_LIMIT))
 
+    @property
+    def condensed(self) -> Path:
+        """Folder of the cache for condensed gears."""
+        return self.cache / "evolvent" / "condensed"
+
     def forget_gears(self) -> None:
         """Removes the condensed gears of the cache, not its compiled forms."""
-        for entry in (self.cache / "evolvent" / "condensed").glob("*"):
+        for entry in self.condensed.glob("*"):
             entry.unlink()
 
     @property

@@ -8,7 +8,8 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-from collections.abc import Callable, Iterable, Iterator
+import time
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from enum import Enum
@@ -29,8 +30,10 @@ PATIENCE = 900.0
 """Seconds after which a seed has hung. Nearly all take one to twenty; 206, a wide plastic pair whose friction history
 lasts thirteen pitches, before and after deflection, takes 250 on a core of its own."""
 
+LOOK = 0.5
+"""Seconds between two looks at whether a campaign has been ended."""
 CHUNK = 10
-"""Seeds that one process after the other is started with."""
+"""Consecutive seeds of one task. A task runs one process at a time, and starts another after a crash or hang."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +64,9 @@ def solve_seeds(trial: Trial, first: int, count: int) -> None:
         print(json.dumps({**asdict(outcome), "verdict": outcome.verdict.name}), flush=True)
 
 
-def all_outcomes(count: int, trial: Trial) -> Iterator[Any]:
-    """The outcomes of the seeds 0 to count − 1 in order, as many processes at a time as there are cores."""
+def all_outcomes(count: int, trial: Trial) -> Generator[Any, None, None]:
+    """The outcomes of the seeds 0 to count − 1 in order, by as many processes at a time as there are cores, of up to
+    3 GB each. They end with the iteration."""
     ended = Event()
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         chunks = [
@@ -71,31 +75,26 @@ def all_outcomes(count: int, trial: Trial) -> Iterator[Any]:
         try:
             for chunk in chunks:
                 yield from chunk.result()
-        finally:  # Control-C ends the processes too
+        finally:
             ended.set()
             for chunk in chunks:
                 chunk.cancel()
 
 
 def _chunk(first: int, count: int, trial: Trial, ended: Event) -> list[Any]:
-    found = []
-    for outcome in campaign(first, count, trial=trial):
-        found.append(outcome)
-        if ended.is_set():
-            break
-    return found
+    return list(campaign(first, count, PATIENCE, trial, ended))
 
 
-def campaign(first: int, count: int, patience: float = PATIENCE, trial: Trial = SCENES) -> Iterator[Any]:
-    """The outcomes of the seeds first, first + 1, ..., whatever they do to the process."""
+def campaign(first: int, count: int, patience: float, trial: Trial, ended: Event) -> Iterator[Any]:
+    """The outcomes of the seeds first, first + 1, ..., whatever they do to the process, until `ended` is set."""
     seed = first
-    while seed < first + count:
-        for outcome in _until_it_dies(seed, first + count - seed, patience, trial):
+    while seed < first + count and not ended.is_set():
+        for outcome in _until_it_dies(seed, first + count - seed, patience, trial, ended):
             yield outcome
             seed = outcome.seed + 1
 
 
-def _until_it_dies(first: int, count: int, patience: float, trial: Trial) -> Iterator[Any]:
+def _until_it_dies(first: int, count: int, patience: float, trial: Trial, ended: Event) -> Iterator[Any]:
     command = module_run("evidence.robustness", trial.command, first, count)
     with subprocess.Popen(
         command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
@@ -105,9 +104,11 @@ def _until_it_dies(first: int, count: int, patience: float, trial: Trial) -> Ite
         Thread(target=_pass_on, args=(process.stdout, lines), daemon=True).start()
         for seed in range(first, first + count):
             try:
-                line = lines.get(timeout=patience)
+                line = _next(lines, patience, ended)
             except Empty:
                 process.kill()
+                if ended.is_set():
+                    return
                 yield trial.outcome(seed, trial.verdict["HUNG"], f"no result after {patience:g} s")
                 return
             if not line:
@@ -115,6 +116,17 @@ def _until_it_dies(first: int, count: int, patience: float, trial: Trial) -> Ite
                 return
             values = json.loads(line)
             yield trial.outcome(**{**values, "verdict": trial.verdict[values["verdict"]]})
+
+
+def _next(lines: Queue[str], patience: float, ended: Event) -> str:
+    """The next line. Raises Empty where there is none within `patience` [s], or `ended` is set before."""
+    until = time.monotonic() + patience
+    while True:
+        try:
+            return lines.get(timeout=LOOK)
+        except Empty:
+            if ended.is_set() or time.monotonic() > until:
+                raise
 
 
 def _pass_on(source: Iterable[str], lines: Queue[str]) -> None:

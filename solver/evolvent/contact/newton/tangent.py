@@ -76,7 +76,7 @@ class Tangent:
 
 
 def refined(solve: Callable[[Floats], Floats], times: Callable[[Floats], Floats], right: Floats) -> Floats:
-    """T⁻¹ right with one refinement: f = b − M z loses digits.
+    """T⁻¹ right with one refinement: the solve loses digits by cancellation.
 
     solve, times: products with an approximate T⁻¹, and with T.
     """

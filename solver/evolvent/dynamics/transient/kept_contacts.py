@@ -127,8 +127,8 @@ class KeptContacts:
         stand = PairRotation(model.pair, angle, self.pair.drive.rotations(ψ))
         contact = facing_flanks(
             model.bodies, stand, list(model.teeth), half_width,
-            "the pair may be thrown apart further than the search looks: give it more damping or another speed",
-            "lower the torque, or give more damping",
+            apart="the pair may be thrown apart further than the search looks: give it more damping or another speed",
+            remedy="lower the torque, or give more damping",
         )
         return SearchedContact.of(self.pair, contact, ψ, self.components)
 

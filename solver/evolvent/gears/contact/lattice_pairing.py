@@ -24,9 +24,6 @@ CONTINUED = 0.1
 image of its tip."""
 INWARDS = 0.1
 """How far inside the edges of the wheel's flank partners are looked for at first, in modules."""
-ROUNDS = 20
-"""Steps from cell to cell in which a partner is looked for: deflection by a third of a module moves it by more than six
-cells."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +43,7 @@ class FacedPoints:
 
     @property
     def inside(self) -> Bools:
-        """Whether the partners lie on the wheel's flank, (q,) bool."""
+        """Whether partners that were found lie on the wheel's flank, (q,) bool."""
         return np.asarray(np.all((self.partner.at > -CONTINUED) & (self.partner.at < 1.0 + CONTINUED), axis=1))
 
 
@@ -109,14 +106,15 @@ def pair_at_lattice(
     """
     faced = faced_points(lattice.line, lattice.point_arc, lattice.point_z, surfaces)
     weight, gap = lattice.weights * faced.pairing.weight, faced.pairing.gap
-    missing = np.flatnonzero(~faced.found & faced.inner & faced.inside)  # others were followed beyond the wheel's edges
+    beyond = lattice.line.flanks[Member.WHEEL].is_beyond(faced.partner, CONTINUED)
+    missing = np.flatnonzero(~faced.found & faced.inner & ~beyond)
     away = lattice.line.distance(lattice.point_arc[missing], lattice.point_z[missing], surfaces)
     lost = float(np.sum(weight[missing[away < max_gap]]))
-    reached = lost + float(np.sum(weight[faced.found & faced.inner & (gap < max_gap)]))
+    reached = lost + float(np.sum(weight[faced.found & faced.inner & faced.inside & (gap < max_gap)]))
     if lost > ALLOWED_LOSS * reached:
         raise SearchError(
             f"contact: wanted partners on the wheel's flank for all but {ALLOWED_LOSS} of the pinion's in reach, none "
-            f"found for {lost:.3e} of {reached:.3e} mm²; refine the mesh or lower the torque"
+            f"found for {lost:.3e} of {reached:.3e} mm²; refine the mesh"
         )
     kept = faced.found & faced.inside & (gap >= -max_overlap) & (gap <= max_gap)
     return replace(faced.pairing, weight=weight, lost=lost).of(kept), kept
@@ -143,11 +141,12 @@ def _partners(
     surface: Surface, cells: FlankCells, places: FlankPlaces, start: Floats, normal: Floats
 ) -> tuple[Ints, Floats, Floats, Bools, FlankPlaces]:
     """Facets (q,) and reference coordinates (q, 2) of the points of a flank on rays, their distances (q,) along these,
-    which were found, (q,) bool, and where they lie on the flank. places: near them."""
+    which were found, (q,) bool, and where they lie on the flank. places: from which they are looked for, from cell to
+    cell."""
     facets, xi = cells.reference(places)
     gap, found = np.zeros(len(facets)), np.zeros(len(facets), dtype=bool)
     away = np.arange(len(facets))
-    for _ in range(ROUNDS):
+    for _ in range(sum(cells.facets.shape)):  # deflection moves partners by many cells
         at, distance, converged = locate(surface, facets[away], start[away, None], normal[away, None], xi[away, None])
         xi[away], gap[away], found[away] = at[:, 0], distance[:, 0], converged[:, 0]
         here = places.of(away)

@@ -99,28 +99,27 @@ class GearContact:
 
 
 def facing_flanks(
-    bodies: tuple[GearBody, GearBody], stand: PairRotation, teeth: list[int], half_width: float, apart: str,
+    bodies: tuple[GearBody, GearBody], stand: PairRotation, teeth: list[int], half_width: float, *, apart: str,
     remedy: str,
 ) -> GearContact:
-    """Flanks within reach of each other at this stand, of `gear_contact`; see there for what it takes.
+    """The contact at this stand; bodies to half_width as in `gear_contact`. Flanks that are apart, or overlap too deep
+    for the search and for small strain, are refused.
 
-    apart: why there may be none, and what to do then.
-    remedy: what to do where they overlap deeper than the search looks.
+    apart: why flanks may be apart, and what to do then.
+    remedy: what to do where they overlap too deep.
 
     Raises NotConverged, SearchError.
     """
     at = f"pinion at {np.degrees(stand.angle):.3f}°: wanted"
-    too_deep = NotConverged(
-        f"{at} teeth that deflect by less than half a module, found more, too much for small strain: {remedy}"
-    )
-    overlap = stand.transmission_error * np.cos(stand.pair.pinion.base_helix_angle)  # of conjugate flanks
-    if overlap > PENETRATION * stand.pair.pinion.normal_module:
-        raise too_deep
+    too_deep = f"{at} teeth that deflect by less than half a module, found more, too much for small strain: {remedy}"
+    conjugate = stand.transmission_error * np.cos(stand.pair.pinion.base_helix_angle)  # overlap without modifications
+    if conjugate > PENETRATION * stand.pair.pinion.normal_module:
+        raise NotConverged(too_deep)
     contact = gear_contact(bodies, stand, teeth, half_width)
     if not contact.geometry.teeth:
         raise NotConverged(f"{at} flanks within reach of each other, found none; {apart}")
     if contact.too_deep:
-        raise too_deep
+        raise NotConverged(too_deep)
     return contact
 
 

@@ -140,7 +140,8 @@ def shared_position(
         been.add(stand.beyond_nominal)
         contact = facing_flanks(
             model.bodies, stand, list(model.teeth), half_width,
-            "the load may bend the teeth further than the search looks: lower the torque", "lower the torque",
+            apart="the load may bend the teeth further than the search looks: lower the torque",
+            remedy="lower the torque",
         )
         system = contact.system(model.load.on, model.load.at(angle), normal_only, threads)
         pressed = partial(_initially_pressed, contact.geometry, before, guess)

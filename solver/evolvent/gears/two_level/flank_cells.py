@@ -66,6 +66,12 @@ class FlankCells:
         across = (places.row > 0) & (places.row < rows - 1)
         return np.asarray(across & (places.layer > 0) & (places.layer < layers - 1))
 
+    def is_beyond(self, places: FlankPlaces, part: float) -> Bools:
+        """Whether places lie beyond the edges of the flank (q,) bool, by more than a part of their cells."""
+        cell, last = np.column_stack([places.row, places.layer]), np.array(self.facets.shape) - 1
+        before, after = (cell == 0) & (places.at < -part), (cell == last) & (places.at > 1.0 + part)
+        return np.asarray((before | after).any(axis=1))
+
     def slopes(self, places: FlankPlaces) -> Floats:
         """Growth (q, 2) of profile arc and height with the coordinates in the cells [mm]."""
         parts = []

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import replace
+from threading import Event
 
 import pytest
 from mpi4py import MPI
@@ -105,7 +107,7 @@ def test_campaign_survives_a_crash_and_a_hang(monkeypatch: pytest.MonkeyPatch) -
         "    print(json.dumps({'seed': seed, 'verdict': 'CONVERGED'}), flush=True)\n"
     )
     monkeypatch.setattr(campaign, "module_run", lambda _, __, *range_: (sys.executable, "-c", crash, *map(str, range_)))
-    verdicts = [o.verdict for o in campaign.campaign(0, 6, patience=3.0)]
+    verdicts = [o.verdict for o in campaign.campaign(0, 6, 3.0, campaign.SCENES, Event())]
     good = Verdict.CONVERGED
     assert verdicts == [good, good, Verdict.CRASHED, good, Verdict.HUNG, good]
 
@@ -122,6 +124,24 @@ def test_outcomes_of_several_processes_come_in_order(monkeypatch: pytest.MonkeyP
     words = (sys.executable, "-c", slow_first)
     monkeypatch.setattr(campaign, "module_run", lambda _, __, *range_: (*words, *map(str, range_)))
     assert [o.seed for o in campaign.all_outcomes(7, campaign.SCENES)] == list(range(7))
+
+
+def test_a_campaign_that_is_ended_ends_its_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first chunk is done at once, all others sleep for a minute: the iteration ends within ten seconds of its
+    first outcome, as with Control-C."""
+    asleep = (
+        "import sys, json, time; first, n = int(sys.argv[-2]), int(sys.argv[-1])\n"
+        "for seed in range(first, first + n):\n"
+        "    time.sleep(0.0 if first == 0 else 60.0)\n"
+        "    print(json.dumps({'seed': seed, 'verdict': 'CONVERGED'}), flush=True)\n"
+    )
+    words = (sys.executable, "-c", asleep)
+    monkeypatch.setattr(campaign, "module_run", lambda _, __, *range_: (*words, *map(str, range_)))
+    outcomes = campaign.all_outcomes(50, campaign.SCENES)
+    assert next(outcomes).seed == 0
+    begin = time.monotonic()
+    outcomes.close()
+    assert time.monotonic() - begin < 10.0
 
 
 def test_scene_summary_counts_every_outcome() -> None:

@@ -149,14 +149,16 @@ def test_overlap_as_deep_as_the_deflection_is_searched(deep: GearModel, monkeypa
 
 
 def test_flanks_turned_into_each_other_by_more_than_half_a_module_are_not_searched(deep: GearModel) -> None:
-    """Problem: the wheel turned into the pinion by 0.49 and 0.51 modules of normal distance, beyond what any search
-    pairs. Exact: the second is refused as too deep, before a search that would find no flanks within reach."""
-    module, wheel = deep.pair.pinion.normal_module, deep.pair.wheel
-    per_module = module / wheel.base_radius / np.cos(wheel.base_helix_angle)
-    for share, searches in ((0.49, 1), (0.51, 0)):
+    """Problem: either gear turned into the other by 0.49 and 0.51 modules of normal distance, beyond what any search
+    pairs. Exact: all are refused as too deep, the second ones before a search that would find no flanks within reach.
+    """
+    module, gears = deep.pair.pinion.normal_module, deep.pair.gears
+    per_module = [module / gear.base_radius / np.cos(gear.base_helix_angle) for gear in gears]
+    for gear, share, searches in ((0, 0.49, 1), (0, 0.51, 0), (1, 0.49, 1), (1, 0.51, 0)):
+        turned = (share * per_module[0], 0.0) if gear == 0 else (0.0, share * per_module[1])
         with patch.object(pair_contact, "gear_contact", side_effect=pair_contact.gear_contact) as search:
             with pytest.raises(NotConverged, match="deflect by less than half a module"):
-                shared_position(deep, 0.0, (0.0, share * per_module), [0.0], None)
+                shared_position(deep, 0.0, turned, [0.0], None)
             assert search.call_count == searches
 
 

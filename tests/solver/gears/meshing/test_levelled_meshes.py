@@ -140,13 +140,16 @@ def test_one_mesh_is_its_own_flank() -> None:
 
 @pytest.mark.parametrize(("seed", "member"), [(73, Member.PINION), (75, Member.WHEEL)])
 def test_pointed_teeth_are_meshed(seed: int, member: Member, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tips 0.07 and 0.09 modules thick: layers below them that reach half as deep leave cells of good quality, those of
-    other teeth do not."""
+    """Tips 0.07 and 0.08 modules thick: with thinner layers cells are of good quality, with those of other teeth they
+    are not. Exact: all layers of an ordinary tooth together are `DEEPEST` modules deep."""
     problem = gear_problem(random_scene(seed, plane=False))
     problem = replace(problem, mesh=MeshSettings("quick", two_level=True))
     gear = problem.pair.gears[member]
     assert gear.normal_thickness(gear.tip_diameter) < 0.1 * gear.normal_module
     levelled_mesh(problem, member)
+    usual = yang().pinion
+    assert element_sizes.deepest_layers(usual).sum() == pytest.approx(element_sizes.DEEPEST * usual.normal_module)
+    assert element_sizes.deepest_layers(gear).sum() < 0.8 * element_sizes.DEEPEST * gear.normal_module
     monkeypatch.setattr(element_sizes, "LEAST_DEEP", 1.0)
     with pytest.raises(MeshError, match="mesh quality"):
         levelled_mesh(problem, member)

@@ -116,13 +116,13 @@ def test_the_example_of_the_readme_runs_as_it_stands(tmp_path: Path) -> None:
 def test_words_about_yang_s_pair_fit_its_figures() -> None:
     """What docs/yang2022.md says in words of the figures that were kept: the largest pressure below the pitch line and
     before it is passed, friction raises the stress before the pitch point and lowers it after, tooth 1 falls with
-    friction, C and D are alike and change more than A, A more than B."""
+    friction, C and D change more than A, A more than B."""
     f = level_figures(ROOT / "docs", "standard")
     assert f["largest_xi_mm"] < 0.0 and f["largest_deg"] < 0.0 < f["crossing_deg"]
     assert f["change_after_low_percent"] < 0.0 < f["change_before_high_percent"]
     assert all(f[f"tooth_1_{name}_change_percent"] < 0.0 for name in ("largest", "average"))
     a, b, c, d = (abs(f[f"point_{name}_change_MPa"]) for name in "ABCD")
-    assert c == pytest.approx(d, rel=0.1) and min(c, d) > a > b
+    assert min(c, d) > a > b
 
 
 def test_changelog_has_the_release() -> None:

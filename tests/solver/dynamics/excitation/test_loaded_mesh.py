@@ -53,10 +53,10 @@ def test_flanks_are_searched_once(monkeypatch: pytest.MonkeyPatch) -> None:
     of the second differences, at most one of four torques wants a second search."""
     count, search = 0, position_search.facing_flanks
 
-    def counted(*args: Any) -> GearContact:
+    def counted(*args: Any, **options: Any) -> GearContact:
         nonlocal count
         count += 1
-        return search(*args)
+        return search(*args, **options)
 
     monkeypatch.setattr(position_search, "facing_flanks", counted)
     loaded_mesh(model(), TORQUES.tolist(), ANGLES[:1])

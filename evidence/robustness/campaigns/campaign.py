@@ -65,12 +65,13 @@ def solve_seeds(trial: Trial, first: int, count: int) -> None:
 
 
 def all_outcomes(count: int, trial: Trial) -> Generator[Any, None, None]:
-    """The outcomes of the seeds 0 to count − 1 in order, by as many processes at a time as there are cores, of up to
-    3 GB each. They end with the iteration."""
+    """The outcomes of the seeds 0 to count − 1 in order, by as many processes at a time as there are cores. They end
+    with the iteration."""
     ended = Event()
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         chunks = [
-            pool.submit(_chunk, first, min(CHUNK, count - first), trial, ended) for first in range(0, count, CHUNK)
+            pool.submit(list, campaign(first, min(CHUNK, count - first), PATIENCE, trial, ended))
+            for first in range(0, count, CHUNK)
         ]
         try:
             for chunk in chunks:
@@ -79,10 +80,6 @@ def all_outcomes(count: int, trial: Trial) -> Generator[Any, None, None]:
             ended.set()
             for chunk in chunks:
                 chunk.cancel()
-
-
-def _chunk(first: int, count: int, trial: Trial, ended: Event) -> list[Any]:
-    return list(campaign(first, count, PATIENCE, trial, ended))
 
 
 def campaign(first: int, count: int, patience: float, trial: Trial, ended: Event) -> Iterator[Any]:

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from evidence import mutations
-from evidence.benchmarks.accuracy import companion_positions, face_load, transient_bar_costs, transient_bars
+from evidence.benchmarks.accuracy import companion_positions, face_load, transient_bar_costs, transient_bars, two_level
 from evidence.benchmarks.cache import kept, modifications
 from evidence.benchmarks.line import accuracy, edges, face_ends, friction, starts
 from evidence.checkout import ROOT
@@ -58,6 +58,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
             "beyond": accuracy.beyond(docs), "friction": friction.said(docs),
             "edges": edges.said(docs), "starts": starts.said(docs),
         },
+        docs / "two_level.md": {"left-out": two_level.left_out(docs)},
         docs / "studies.md": {
             "keys": study_page.keys(), "figures": study_page.figures(), "measured": study_page.measured(docs),
         },

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import nan
+from pathlib import Path
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from evidence.benchmarks.accuracy.same_cells import exact_model, fine_nodes, two
 from evidence.benchmarks.accuracy.slice_peaks import slice_peaks
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evidence.scenes import SPUR, WHOLE_WIDTH, helical_pair_of_width
+from evidence.tables import markdown, read_rows
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.problem.gear_problem import RESOLVED, GearOptions, GearProblem, MeshSettings
@@ -184,6 +186,30 @@ def _share(result: PositionResult, tooth: int) -> float:
     c = result.contact
     force = c.pressure * c.weights
     return float(force[c.tooth == tooth].sum() / force.sum())
+
+
+LEFT_OUT = {
+    "peak-to-peak transmission error": "peak-to-peak transmission error",
+    "load sharing, of the load": "load sharing, of the load",
+    "peaks: nine in ten": "largest pressures of slices, nine in ten",
+    "peaks: all": "the same, all",
+}
+"""Begin of `AccuracyRow.what` -> words of docs/two_level.md."""
+
+
+def left_out(docs: Path) -> str:
+    """The table of docs/two_level.md: how far pairs in levels are from the same cells, condensed exactly. Raises
+    ValueError where nothing was measured."""
+    path = docs / "benchmark" / "two_level.csv"
+    measured, lines = read_rows(path, AccuracyRow), []
+    for begin, words in LEFT_OUT.items():
+        own = sorted((row for row in measured if row.what.startswith(begin)), key=lambda row: row.figure)
+        if len(own) < 3:
+            raise ValueError(f"{path}: wanted {begin!r} of three cases, found {len(own)}; measure `two-level`")
+        figures = float(np.median([row.figure for row in own])), own[-3].figure, own[-2].figure, own[-1].figure
+        lines.append([words, *(f"{100.0 * figure:.2g}" for figure in figures), own[-1].case])
+    head = ["% of", f"median of {len(own)} cases", "all but two within", "all but one within", "largest", "of"]
+    return markdown(head, lines, range(1, 5))
 
 
 BOTH = (0.0, 0.3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,9 +15,11 @@ from evidence.benchmarks.accuracy.two_level import (
     TINY,
     AccuracyRow,
     difference_rows,
+    left_out,
     random_cases,
     yang_case,
 )
+from evidence.tables import write_rows
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.meshing.levelled_meshes import is_two_level, levelled_mesh
 from evolvent.gears.problem.gear_problem import MeshSettings
@@ -75,3 +78,23 @@ def test_levels_are_compared_with_the_same_cells() -> None:
     }
     assert all(row.met for row in found if row.what.startswith(("peaks", "load", "mean")))
     assert next(row.figure for row in found if row.what.startswith("mean")) < 1e-3
+
+
+def test_page_names_the_case_that_is_furthest_off(tmp_path: Path) -> None:
+    """Differences of 1, 2, 3 and 9 %: the median is 2.5 %; all but two within 2 %, all but one within 3 %; other rows
+    of a case do not count."""
+    percents = {"a": 3.0, "b": 9.0, "c": 1.0, "d": 2.0}
+    whats = "peak-to-peak transmission error", "load sharing, of the load", "peaks: nine in ten of 5", "peaks: all of 5"
+    rows = [AccuracyRow(case, what, 0.01 * off, math.nan) for case, off in percents.items() for what in whats]
+    rows += [AccuracyRow("a", what, 0.99, math.nan) for what in ("mean transmission error", "peaks beside face ends")]
+    (tmp_path / "benchmark").mkdir()
+    write_rows(tmp_path / "benchmark" / "two_level.csv", rows)
+    lines = left_out(tmp_path).splitlines()
+    assert len(lines) == 6 and "median of 4 cases" in lines[0]
+    assert all(line.endswith("| 2.5 | 2 | 3 | 9 | b |") for line in lines[2:])
+
+
+def test_page_wants_what_was_measured(tmp_path: Path) -> None:
+    """No rows, no table."""
+    with pytest.raises(ValueError, match="wanted 'peak-to-peak transmission error' of three cases, found 0"):
+        left_out(tmp_path)

@@ -126,8 +126,9 @@ DEFORMED = (
     ("displacement_mm", "of the nodes, a vector, at the first friction coefficient: Warp By Vector bends the teeth"),
     ("stress_MPa", "in the cells, at their centres: nine components, in space"),
     (
-        "von_mises_MPa", "in the cells, at their centres; not for strength: fillets are coarse, and flanks in levels show "
-        "their coarse body; root stresses are those of `evolvent strength`",
+        "von_mises_MPa",
+        "in the cells, at their centres; not for strength: fillets are coarse, and flanks in levels show their coarse "
+        "body; root stresses are those of `evolvent strength`",
     ),
     ("gear", "of a cell: 0 the pinion's, 1 the wheel's"),
     ("tooth", "of a cell: the tooth pair, as in teeth.csv"),

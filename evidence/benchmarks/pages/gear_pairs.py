@@ -96,7 +96,8 @@ def _runs_said(rows: Sequence[RunRow]) -> list[str]:
 
 
 def _earlier_said(rows: Sequence[EarlierRow]) -> list[str]:
-    before, now = (", ".join(sorted(names)) for names in zip(*{(row.commit, row.own_commit) for row in rows}))
+    commits = {row.commit for row in rows}, {row.own_commit for row in rows}
+    before, now = (", ".join(sorted(names)) for names in commits)
     return [
         f"Commits {before} (*before*) and {now} (*now*), one run after the other on {RANKS} ranks "
         "(`python -m evidence.benchmarks.gears.earlier CHECKOUT`): wall seconds of the whole process, memory of all "

@@ -107,7 +107,7 @@ def _about_tip_edges(run: RunData) -> Iterator[str]:
         ξ = next(peak.roll_distance for peak in peaks if peak.at_zone_end)
         yield (
             f"The largest pressure occurs where a tip-edge zone begins (ξ = {signed(ξ, 2)} mm) and rises further "
-            "inside it: its value depends on the limit of the zone, and so on the mesh; relieve the tips."
+            "inside it: its value and error bar are for this limit, which depends on the mesh; relieve the tips."
         )
 
 

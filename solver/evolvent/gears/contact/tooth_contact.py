@@ -25,7 +25,8 @@ from evolvent_meshes.gears.member import Member
 
 GAP = 0.2  # largest distance [module] between flanks that the search pairs
 PENETRATION = 0.55
-"""Largest overlap [modules] of undeflected flanks that are paired: more than teeth may deflect (`pair_contact.DEEPEST`)."""
+"""Largest overlap [modules] of undeflected flanks that are paired: more than `pair_contact.DEEPEST`, by which teeth may
+deflect."""
 Displaced = tuple[Floats, Floats]
 """Displacements (n, d) [mm] of the flank nodes of pinion and wheel, in the common frame."""
 

@@ -156,7 +156,7 @@ def _run(run: RunRow) -> Iterator[Promise]:
 
 
 def _error_bars(tables: Path) -> Iterator[Promise]:
-    for name, what in (("bars", "true error inside the error bar"),
+    for name, what in (("bars", "true error inside the error bar, one mesh a sector, without K_Hβ"),
                        ("spacing", "error of the spacing of positions inside its bar")):
         rows = read_rows(tables / f"{name}.csv", BarRow)
         inside = sum(row.inside for row in rows)

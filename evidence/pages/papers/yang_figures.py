@@ -1,13 +1,14 @@
 """`python -m evidence.pages.papers.yang_figures OUT`: keeps the figures of docs/yang2022.md of a run of its scene.
 
 They are those at the smallest and at the largest friction coefficient of the run. Angles are those of a tooth, 0 at the
-pitch point. `python -m evidence.pages` then writes them into the pages.
+pitch point. `python -m evidence.pages` then writes them into the pages. README's picture is that of level standard.
 """
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+from shutil import copy
 
 import numpy as np
 
@@ -116,5 +117,14 @@ def level_figures(docs: Path, level: str) -> dict[str, float]:
     return kept.kept(docs / KEPT / f"{level}.csv", "python -m evidence.pages.papers.yang_figures OUT")
 
 
+def main() -> None:
+    """Keeps the figures of a run, and the picture of its loaded pair."""
+    folder = Path(sys.argv[1])
+    run = read_run(folder)
+    print(keep(run, DOCS))
+    if run.scene.mesh.level == "standard":
+        copy(folder / "pictures/01_loaded_pair.png", DOCS / "pictures/loaded_pair.png")
+
+
 if __name__ == "__main__":
-    print(keep(read_run(Path(sys.argv[1])), DOCS))
+    main()

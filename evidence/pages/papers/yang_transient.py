@@ -169,7 +169,8 @@ def frictions_table(docs: Path) -> str:
         for μ in FRICTIONS
     ]
     at = [f"at {speed} r/min" for speed in SPEEDS]
-    head = ("μ", "transmission error, peak to peak [µm]: statics", *at, "largest pressure [MPa]: statics", *at)
+    statics = f"statics, torque held on the wheel, quick, {POSITIONS} positions"
+    head = ("μ", f"transmission error, peak to peak [µm]: {statics}", *at, "largest pressure [MPa]: statics", *at)
     return markdown(head, rows)
 
 

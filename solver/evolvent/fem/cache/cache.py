@@ -88,8 +88,8 @@ class Cache:
         return digest((program_identity(), inputs)) if self.folder else ""
 
     def read(self, name: str, kind: type[T], about: str) -> T | None:
-        """The value of a name, its arrays read-only; None where there is none, where it cannot be read now, and where it
-        is damaged, which is removed; the log says why. about: what it is, in words."""
+        """The value of a name, its arrays read-only; None where there is none, where it cannot be read now, and where
+        it is damaged, which is removed; the log says why. about: what it is, in words."""
         if not self.folder:
             return None
         path = self.folder / (name + SUFFIX)

@@ -88,17 +88,17 @@ class Cache:
         return digest((program_identity(), inputs)) if self.folder else ""
 
     def read(self, name: str, kind: type[T], about: str) -> T | None:
-        """The value of a name, its arrays read-only; None where there is none, or one that is damaged, which is removed
-        and logged. about: what it is, in words."""
+        """The value of a name, its arrays read-only; None where there is none, where it cannot be read now, and where
+        it is damaged, which is removed; the log says why. about: what it is, in words."""
         if not self.folder:
             return None
         path = self.folder / (name + SUFFIX)
         try:
             found = decoded(read_value(path), kind)
-            os.utime(path)
-            _log("from the cache: %s", about)
-            return found
         except FileNotFoundError:
+            return None
+        except (OSError, MemoryError) as error:
+            _log("not from the cache: %s (%s: %s)", about, path, error)
             return None
         except Exception as error:  # cattrs and NumPy raise whatever the bytes of another file lead them to
             reason = str(error) if isinstance(error, DamagedFile) else f"{type(error).__name__}: {error}"
@@ -106,6 +106,10 @@ class Cache:
             with suppress(OSError):
                 path.unlink()
             return None
+        with suppress(OSError):
+            os.utime(path)
+        _log("from the cache: %s", about)
+        return found
 
     def write(self, name: str, value: T, kind: type[T], about: str) -> None:
         """Keeps a value; where that is not possible, the log says why."""

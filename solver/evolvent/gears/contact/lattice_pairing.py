@@ -33,18 +33,15 @@ class FacedPoints:
     pairing: all q points; their weights are the area of the pinion's flank per profile arc and height.
     found: (q,) bool whether there is a partner.
     inner: (q,) bool whether the place that faces a point on conjugate flanks is not at the edge of the wheel's.
+    inside: (q,) bool whether the place that a point was followed to is not beyond the wheel's flank, continued.
     partner: places of the partners.
     """
 
     pairing: Pairing
     found: Bools
     inner: Bools
+    inside: Bools
     partner: FlankPlaces
-
-    @property
-    def inside(self) -> Bools:
-        """Whether partners that were found lie on the wheel's flank, (q,) bool."""
-        return np.asarray(np.all((self.partner.at > -CONTINUED) & (self.partner.at < 1.0 + CONTINUED), axis=1))
 
 
 def faced_points(line: ContactLine, arc: Floats, z: Floats, surfaces: tuple[Surface, Surface]) -> FacedPoints:
@@ -61,7 +58,8 @@ def faced_points(line: ContactLine, arc: Floats, z: Floats, surfaces: tuple[Surf
     measure = np.sqrt(dot(area, area)) / np.prod(pinion.slopes(places), axis=1)
     opposite = wheel.place(line.opposite(z, arc), z)
     facet2, xi2, gap, found, partner = _partners(second, wheel, opposite, value[:, 0, :3], _units(value[:, 0, 3:]))
-    return FacedPoints(Pairing(facet1, xi1, facet2, xi2, measure, gap, 0.0), found, wheel.is_inner(opposite), partner)
+    pairing, inside = Pairing(facet1, xi1, facet2, xi2, measure, gap, 0.0), ~wheel.is_beyond(partner, CONTINUED)
+    return FacedPoints(pairing, found, wheel.is_inner(opposite), inside, partner)
 
 
 def with_wheel_edges(line: ContactLine, surfaces: tuple[Surface, Surface], whole: bool = False) -> ContactLine:
@@ -106,8 +104,7 @@ def pair_at_lattice(
     """
     faced = faced_points(lattice.line, lattice.point_arc, lattice.point_z, surfaces)
     weight, gap = lattice.weights * faced.pairing.weight, faced.pairing.gap
-    beyond = lattice.line.flanks[Member.WHEEL].is_beyond(faced.partner, CONTINUED)
-    missing = np.flatnonzero(~faced.found & faced.inner & ~beyond)
+    missing = np.flatnonzero(~faced.found & faced.inner & faced.inside)
     away = lattice.line.distance(lattice.point_arc[missing], lattice.point_z[missing], surfaces)
     lost = float(np.sum(weight[missing[away < max_gap]]))
     reached = lost + float(np.sum(weight[faced.found & faced.inner & faced.inside & (gap < max_gap)]))
@@ -157,4 +154,6 @@ def _partners(
         places = places.replaced(away[left], moved.of(left))
         away = away[left]
         facets[away], xi[away] = cells.reference(places.of(away))
+    else:
+        found[away] = False
     return facets, xi, gap, found, cells.moved(places, xi)

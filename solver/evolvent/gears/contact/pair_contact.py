@@ -22,13 +22,16 @@ from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.contact.contact_geometry import ContactGeometry
-from evolvent.gears.contact.tooth_contact import PENETRATION, Displaced, tooth_contact
+from evolvent.gears.contact.tooth_contact import Displaced, tooth_contact
 from evolvent.gears.kinematics import PairRotation
 from evolvent_meshes.gears.member import Member
 
 TOLERANCE = 1e-8
 """Residual force of a position, over its load. Transmission errors of Yang's pair at standard are then within 1e-9 of
 those at 1e-12, losses within 5e-9."""
+DEEPEST = 0.5
+"""Overlap of undeflected flanks [normal modules] from which on teeth deflect too much for small strain. The search
+looks deeper (`tooth_contact.PENETRATION`), so that no point is missing."""
 
 
 @dataclass(frozen=True)
@@ -92,10 +95,9 @@ class GearContact:
         )
 
     @property
-    def too_deep(self) -> bool:
-        """Whether undeflected flanks overlap nearly as deep as the search looks: deeper points would be missing."""
-        deepest = -float(self.operator.gap.min())
-        return deepest > 0.9 * PENETRATION * self.stand.pair.pinion.normal_module
+    def overlap(self) -> float:
+        """Depth to which undeflected flanks overlap [normal modules]."""
+        return -float(self.operator.gap.min()) / self.stand.pair.pinion.normal_module
 
 
 def facing_flanks(
@@ -113,12 +115,12 @@ def facing_flanks(
     at = f"pinion at {np.degrees(stand.angle):.3f}°: wanted"
     too_deep = f"{at} teeth that deflect by less than half a module, found more, too much for small strain: {remedy}"
     conjugate = stand.transmission_error * np.cos(stand.pair.pinion.base_helix_angle)  # overlap without modifications
-    if conjugate > PENETRATION * stand.pair.pinion.normal_module:
+    if conjugate > DEEPEST * stand.pair.pinion.normal_module:
         raise NotConverged(too_deep)
     contact = gear_contact(bodies, stand, teeth, half_width)
     if not contact.geometry.teeth:
         raise NotConverged(f"{at} flanks within reach of each other, found none; {apart}")
-    if contact.too_deep:
+    if contact.overlap > DEEPEST:
         raise NotConverged(too_deep)
     return contact
 

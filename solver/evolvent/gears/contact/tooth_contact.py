@@ -24,7 +24,9 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 
 GAP = 0.2  # largest distance [module] between flanks that the search pairs
-PENETRATION = 0.5  # largest overlap [module] of undeformed flanks that it pairs: far beyond any small strain
+PENETRATION = 0.55
+"""Largest overlap [modules] of undeflected flanks that are paired: more than `pair_contact.DEEPEST`, by which teeth may
+deflect."""
 Displaced = tuple[Floats, Floats]
 """Displacements (n, d) [mm] of the flank nodes of pinion and wheel, in the common frame."""
 

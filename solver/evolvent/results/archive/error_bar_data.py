@@ -14,8 +14,9 @@ from evolvent.scene.skips import wanted_output
 METHOD = (
     "difference to the same scene on meshes of twice the element size; of a pressure, between the tip-edge zones: "
     "difference to Hertz for the slices' own line loads, plus the difference of these loads between the meshes; plus, "
-    "of all figures, what may lie between the positions (spacing_error); the largest pressure of a spur pair is that "
-    "away from the starts of linear reliefs; where "
+    "of all figures, what may lie between the positions (spacing_error); plus, of the loss, the energy that the pitch "
+    "does not balance; none of a largest pressure at the limit of a tip-edge zone (max_pressure_at_zone_end); the "
+    "largest pressure of a spur pair is that away from the starts of linear reliefs; where "
     "flanks have levels, what the reach of their patches leaves out is not in it (docs/two_level.md)"
 )
 """Method of the error bars, as summary.json names it; bars archived with another method are estimated anew."""

@@ -10,8 +10,10 @@ D and the rates p are those of `compared`.
   run's mesh, plus the error of the loads: D between the meshes of Hertz' peaks on the nominal contact lines, over
   2^p − 1. It is too wide where a flank departs from Hertz' assumptions, at the start of a relief or the end of a face.
   Both meshes are evaluated between the tip-edge zones of the run's mesh, as the figure is: on the companion's larger
-  cells these zones are wider, but the loads within them are known.
-
+  cells these zones are wider, but the loads within them are known. Where the largest pressure lies at the limit of such
+  a zone it has no bar: how it changes with that limit is in neither estimate.
+- Loss: plus the energy that the pitch does not balance, over the input. The work of friction is less than that of both
+  torques by it, as normals are those before deflection (`certificates.pitch_imbalance`).
 - Face load factor: D/(2^p − 1) as of the loads; the curves are those over the face, averaged over the layers of the
   companion. Where the load rises towards an end of the face the largest one is that of an end layer, and D is by how
   much it falls if the layer is twice as long: as much as the limit at the end of the face exceeds it.
@@ -26,9 +28,11 @@ in none of them.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import nan
 
 import numpy as np
 
+from evolvent.gears.solution.certificates import pitch_imbalance
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.error_bar_data import (
     LINE_METHOD,
@@ -39,7 +43,7 @@ from evolvent.results.archive.error_bar_data import (
     summed_errors,
     write_error_bars,
 )
-from evolvent.results.engagement import engagement, with_hertz, with_line_loads
+from evolvent.results.engagement import engagement, largest_peak, with_hertz, with_line_loads
 from evolvent.results.error_bars.compared import SHARING, STIFFNESS, Compared, Curve, Reduction, keys
 from evolvent.results.error_bars.line_parts import line_parts
 from evolvent.results.error_bars.position_spacing import PositionFigure, spacing_errors
@@ -77,14 +81,21 @@ def estimated_errors(run: RunData, companion: Companion) -> EstimatedErrors:
         return EstimatedErrors(missing=companion.failure)
     try:
         mesh = errors_between(run, companion.run)
-        parts = [(errors, spacing_errors(run, k)) for k, errors in enumerate(mesh)]
-        sums = [summed_errors(*each) for each in parts]
+        sums = [_of_figures(run, k, summed_errors(errors, spacing_errors(run, k))) for k, errors in enumerate(mesh)]
         if run.is_line:
             more = tuple(summed_errors(errors, line_parts(run, k)) for k, errors in enumerate(sums))
             return EstimatedErrors(more, LINE_METHOD, "")
         return EstimatedErrors(tuple(sums), METHOD, "")
     except (ValueError, IndexError) as error:  # a companion without these figures, as without any contact
         return EstimatedErrors(missing=f"The coarse companion's figures cannot be compared: {error}")
+
+
+def _of_figures(run: RunData, index: int, errors: FigureErrors) -> FigureErrors:
+    """Errors at the friction coefficient with this index, with what neither mesh nor spacing says: see above."""
+    results = [each[index].result for each in run.positions[: run.scene.sweep.positions]]
+    unbalanced = 100.0 * pitch_imbalance(results) if run.frictions[index] > 0.0 else 0.0
+    known = nan if largest_peak(run, index).at_zone_end else errors.max_pressure_MPa
+    return replace(errors, max_pressure_MPa=known, loss_percent=errors.loss_percent + unbalanced)
 
 
 def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:

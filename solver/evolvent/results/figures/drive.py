@@ -150,7 +150,7 @@ def line_load(run: RunData, index: int = 0) -> Figure:
     inside = load[(ξ > start) & (ξ < end) & ~edge]
     subtitle = f"Away from the tip edges {inside.min():.0f} to {inside.max():.0f} N/mm"
     subtitle += f", at most {inside.max() / mean:.2f} times the uniform line load (μ = {run.frictions[index]:g})"
-    subtitle += "." if run.plane else f"; face load factor {_face_load_factor(run, index)}."
+    subtitle += "." if run.plane else f"; rigid shafts: {_face_load_factor(run, index)}."
     figure = sheet("Line load and sliding along the path of contact", subtitle, (10.0, 6.2))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
     upper.plot(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
+from matplotlib.colors import ListedColormap
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -12,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from evolvent.gears.pressure.contact_slices import Slices, on_tip_edge, over_kink
 from evolvent.gears.pressure.line_peaks import pooled_peaks
 from evolvent.gears.pressure.relief_starts import relief_starts
-from evolvent.results.drawing.style import ABOVE, INK, PRESSURE_MAP, foot, sheet
+from evolvent.results.drawing.style import AT_ZONE_END, FAINT, INK, PRESSURE_MAP, foot, sheet
 from evolvent.results.engagement import largest_peak
 from evolvent.results.fields.flank_field import flank_field, flank_patch
 from evolvent.results.run_data import RunData, SolvedPosition
@@ -44,7 +45,7 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
         _flank_axes(ax, run)
     _diameters(axes[-1], run)
     bar = figure.colorbar(shown, ax=list(axes), location="bottom", shrink=0.5, aspect=45, pad=0.02, extend="max")
-    bar.set_label(f"pressure [MPa]   ({ABOVE})")
+    bar.set_label("pressure [MPa]   (blue: above the scale, where a linear relief begins; grey: a tip edge bears)")
     if few := few_positions(friction_rows(run)[index]):
         foot(figure, few)
     return figure
@@ -147,14 +148,21 @@ def _label_places(lines: ContourSet, run: RunData) -> list[tuple[float, float]]:
 
 
 def _position_map(axes: Axes, run: RunData, solved: SolvedPosition, top: float) -> None:
-    """The pressures of all teeth at a position on one flank."""
+    """The pressures of all teeth at a position on one flank; one colour where a tooth pair bears on a tip edge, as the
+    pressure is singular there."""
     result, patch = solved.result, flank_patch(run, Member.PINION)
-    fields = [flank_field(run, result, int(tooth)) for tooth in np.unique(result.tooth)]
-    teeth = [patch.values(run, result, int(tooth), field) for tooth, field in zip(np.unique(result.tooth), fields)]
+    pressure, on_edge = np.zeros((2, len(patch.roll_length), len(patch.z)))
+    for tooth in map(int, np.unique(result.tooth)):
+        own = patch.values(run, result, tooth, flank_field(run, result, tooth))
+        edge = on_tip_edge(solved.cut, tooth, patch.z)
+        pressure = np.maximum(pressure, own * ~edge)
+        on_edge = np.maximum(on_edge, (own > 0.0) & edge)
     ξ = patch.roll_length - run.pair.pitch_point_roll_lengths[0]
     axes.pcolormesh(
-        patch.z, ξ, np.max(teeth, axis=0), cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="gouraud", rasterized=True
+        patch.z, ξ, pressure, cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="gouraud", rasterized=True
     )
+    shown = np.where(on_edge > 0.0, 1.0, np.nan)
+    axes.pcolormesh(patch.z, ξ, shown, cmap=ListedColormap([FAINT]), shading="nearest", rasterized=True)
     _nominal_lines(axes, run, solved.result.stand.angle)
 
 
@@ -193,7 +201,8 @@ def _map_subtitle(run: RunData, index: int) -> str:
     top = largest_peak(run, index)
     ξ = top.roll_distance
     side = "below the pitch line, towards the root" if ξ < 0 else "above the pitch line, towards the tip"
-    where = f"at ξ = {signed(ξ, 2)} mm, {side}" if np.isfinite(ξ) else "nowhere"
+    limit = f", {AT_ZONE_END}" if top.at_zone_end else ""
+    where = f"at ξ = {signed(ξ, 2)} mm, {side}{limit}" if np.isfinite(ξ) else "nowhere"
     subtitle = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, occurs {where}"
     blank = "; blank: linear reliefs begin" if relief_starts(run.pair) else ""
     return f"{subtitle}; dashed: contact lines of rigid flanks{blank}."

@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import between
 from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.results.drawing.style import (
     AT_ZONE_END,
@@ -41,7 +42,8 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     cut = Slices.joined([each[index].cut for each in run.positions])
     ξ, peak, hertz = cut.roll_distance, cut.peak, cut.hertz
     start, end = run.pair.path_of_contact
-    within = np.isfinite(peak) & (ξ > start) & (ξ < end)
+    fitted = np.isfinite(peak) & (ξ > start) & (ξ < end)
+    within = fitted & between(ξ, run.inner_path)
     inside, kink = within & ~cut.kink, within & cut.kink
     ratio = peak[inside] / hertz[inside] - 1.0
     middle, most = signed(100 * float(np.median(ratio))), 100 * np.quantile(np.abs(ratio), 0.9)
@@ -70,6 +72,9 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
         alpha=0.5,
         label="Hertz, the slice's line load",
     )
+    if (beyond := fitted & ~within).any():
+        size = dot_size(len(ξ)) - 1
+        along.plot(ξ[beyond], peak[beyond], ".", color=FAINT, markersize=size, alpha=0.5, label="in a tip-edge zone")
     if kink.any():
         along.plot(ξ[kink], peak[kink], "x", color=FAINT, markersize=4.0, label=f"computed, {OVER_KINK}")
     for number, each in enumerate(relief_kinks(run, index)):

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.gears.pressure.contact_slices import Slices
-from evolvent.gears.pressure.line_peaks import pooled_peaks
+from evolvent.gears.pressure.line_peaks import between, pooled_peaks
 from evolvent.results.drawing.style import FAINT, foot, friction_colours, sheet
 from evolvent.results.drawing.teeth import short_name
 from evolvent.results.figures.flank import FACE, envelope
@@ -72,8 +72,10 @@ def line_pressure_over_z(run: RunData) -> Figure:
     axes, shown = figure.subplots(1, len(teeth), sharey=True, squeeze=False)[0], set[str]()
     for ax, tooth in zip(axes, teeth):
         for solved, colour in zip(run.positions[k], friction_colours(run.frictions)):
-            z, _, peak = line_of(solved.cut, tooth)
-            ax.plot(z, peak, color=colour, label=f"μ = {solved.result.friction:g}")
+            z, ξ, peak = line_of(solved.cut, tooth)
+            ax.plot(z, peak, color=colour, linestyle=":", linewidth=1.0)
+            shown_peak = np.where(between(ξ, run.inner_path), peak, np.nan)
+            ax.plot(z, shown_peak, color=colour, label=f"μ = {solved.result.friction:g}")
         marks = _marks(run, k, tooth)
         shown.update(name for name, _ in marks)
         rows = label_rows([place for _, place in marks], BESIDE * len(teeth) * run.pair.face_width)
@@ -87,7 +89,7 @@ def line_pressure_over_z(run: RunData) -> Figure:
     axes[0].set_ylim(bottom=0.0)
     axes[-1].legend(title="friction coefficient", loc="lower center", ncols=2)
     legend = [_points_named(shown)] if shown else []
-    foot(figure, *legend, "Not drawn where a contact line bears on a tip edge.")
+    foot(figure, *legend, "Dotted in the tip-edge zones; not drawn where a contact line bears on a tip edge.")
     return figure
 
 
@@ -212,9 +214,12 @@ def _lines_subtitle(run: RunData, k: int, teeth: Sequence[int]) -> str:
     lowest, highest = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
     texts = []
     for tooth in teeth:
-        (z, _, peak), (places, _, other) = (line_of(run.positions[k][i].cut, tooth) for i in (lowest, highest))
+        (z, ξ, peak), (places, _, other) = (line_of(run.positions[k][i].cut, tooth) for i in (lowest, highest))
+        inside = between(ξ, run.inner_path)
+        if not inside.any():
+            continue
         _, first, second = np.intersect1d(np.round(z, 9), np.round(places, 9), return_indices=True)
         change = f" ({signed(100 * (other[second].mean() / peak[first].mean() - 1))} %)" if highest != lowest else ""
-        texts.append(f"{short_name(tooth)}, {peak.min():.0f} to {peak.max():.0f} MPa{change}")
+        texts.append(f"{short_name(tooth)}, {peak[inside].min():.0f} to {peak[inside].max():.0f} MPa{change}")
     more = f", in brackets the mean change to μ = {run.frictions[highest]:g}" if highest != lowest else ""
     return f"At μ = {run.frictions[lowest]:g}{more}: " + "; ".join(texts) + "."

@@ -25,7 +25,8 @@ def friction_trend(run: RunData) -> Figure:
     changes = ", ".join(f"{name} by {signed(percent)} %" for name, percent in change)
     subtitle = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
     figure = sheet("Contact stress over the friction coefficient", subtitle, (10.4, 6.4))
-    grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
+    cells = figure.add_gridspec(3, 2, height_ratios=(1.2, 1.0, 0.2))
+    grid, below = cells[:2, :].subgridspec(2, 2, height_ratios=(1.2, 1.0)).subplots(sharex=True), cells[2, :]
     for trend, colour, marker in zip(each_tooth, TEETH, "osD^"):
         for column, values in enumerate((trend.average, trend.largest)):
             grid[0, column].plot(μ, values, color=colour, marker=marker, label=long_name(trend.tooth))
@@ -34,7 +35,7 @@ def friction_trend(run: RunData) -> Figure:
         grid[0, 1].plot(*zip(*ends), color=colour, **{**HOLLOW, "marker": marker}) if ends else None
     for column, title in enumerate(("average along the contact line, over the pitch", "maximum over the pitch")):
         grid[0, column].set_title(title, fontsize=10)
-        grid[0, column].set_ylim(0.0, (1.3 + 0.09 * len(each_tooth)) * max(np.max(t.largest) for t in each_tooth))
+        grid[0, column].set_ylim(0.0, 1.15 * max(np.max(t.largest) for t in each_tooth))
         grid[1, column].axhline(0.0, color=FAINT, linewidth=1.0)
         grid[1, column].set_xlabel("friction coefficient μ")
         grid[1, column].set_xlim(-0.03 * μ[-1], 1.05 * μ[-1])
@@ -43,7 +44,9 @@ def friction_trend(run: RunData) -> Figure:
     handles, _ = grid[0, 1].get_legend_handles_labels()
     at_end = any(trend.at_zone_end.any() for trend in each_tooth)
     hollow = [Line2D([], [], color=INK, label=AT_ZONE_END, **HOLLOW)] if at_end else []
-    grid[0, 1].legend(handles=[*handles, *hollow], loc="upper right")
+    names = figure.add_subplot(below)
+    names.axis("off")
+    names.legend(handles=[*handles, *hollow], loc="center", ncols=3)
     return figure
 
 

@@ -85,10 +85,10 @@ def bad_cells(quality: float) -> str:
 
 def _few_cells(run: RunData) -> str:
     """The consequence of fewer cells than `FEWEST_CELLS` across the contact, with the error bar where there is one."""
-    if not run.errors.figures:
+    largest = np.array([largest_peak(run, index).pressure for index in range(len(run.frictions))])
+    bars = np.array([run.errors.bar("max_pressure_MPa", index) for index in range(len(run.frictions))])
+    if not np.isfinite(bar := float((100.0 * bars / largest).max())):
         return few_cells()
-    largest = [largest_peak(run, index).pressure for index in range(len(run.frictions))]
-    bar = max(100.0 * run.errors.bar("max_pressure_MPa", index) / peak for index, peak in enumerate(largest))
     return (
         f"below {FEWEST_CELLS:g}, pressures of single positions {SCATTER}; the largest one is known within its error "
         f"bar, {brief(bar)} %, but not where it occurs; for better ones {FINER}."
@@ -107,7 +107,8 @@ def _about_tip_edges(run: RunData) -> Iterator[str]:
         ξ = next(peak.roll_distance for peak in peaks if peak.at_zone_end)
         yield (
             f"The largest pressure occurs where a tip-edge zone begins (ξ = {signed(ξ, 2)} mm) and rises further "
-            "inside it: its value depends on the limit of the zone, and so on the mesh; relieve the tips."
+            "inside it: its value depends on the limit of the zone, and so on the mesh, and has no error bar; relieve "
+            "the tips."
         )
 
 

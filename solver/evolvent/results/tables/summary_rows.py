@@ -126,7 +126,7 @@ class FrictionRow:
     """Pinion rotation of the tooth at its largest contact pressure; 0 is the pitch point at mid-face."""
     max_pressure_at_zone_end: bool
     """Whether it lies at the limit of a tip-edge zone, so that its value depends on the place of that limit, and so on
-    the mesh, which its error bar leaves out."""
+    the mesh. Then it has no error bar."""
     kink_pressure_MPa: float
     """Largest contact pressure of a spur pair while the contact passes the start of a linear tip or root relief, p0 as
     above: Hertz' pressure for the load there times a factor of the kink's angle, in closed form, for an ideal kink of

@@ -109,6 +109,26 @@ def test_a_damaged_file_is_made_again(
     assert calls == [1, 1]
 
 
+@pytest.mark.parametrize("error", [MemoryError("too little"), OSError("busy")])
+def test_a_file_that_cannot_be_read_now_stays(
+    error: Exception, cache: Cache, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Memory that runs out or a disk that does not answer damages no file: the value is made, the log says why, and
+    the file is read the next time."""
+    calls: list[int] = []
+    value_of(cache, 1, calls)
+
+    def failing(path: object) -> None:
+        raise error
+
+    with monkeypatch.context() as patched, caplog.at_level(logging.INFO):
+        patched.setattr(module, "read_value", failing)
+        assert np.array_equal(value_of(cache, 1, calls).array, made(1).array)
+    assert calls == [1, 1] and f"not from the cache: value 1 ({cache.entries()[0].path}: {error})" in caplog.text
+    value_of(cache, 1, calls)
+    assert calls == [1, 1]
+
+
 def test_nothing_is_read_or_kept_where_the_size_is_0(cache: Cache, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a cache each call makes its value; by the environment variable, too."""
     calls: list[int] = []

@@ -140,7 +140,7 @@ def test_overlap_as_deep_as_the_deflection_is_searched(deep: GearModel, monkeypa
     monkeypatch.setattr(tooth_contact, "PENETRATION", 1.0)
     assert approach(loaded(TIMES)) == pytest.approx(approach(found), rel=1e-9)
     monkeypatch.setattr(tooth_contact, "PENETRATION", 0.2)
-    monkeypatch.setattr(GearContact, "too_deep", False)
+    monkeypatch.setattr(GearContact, "overlap", 0.0)
     with pytest.raises(NotConverged, match="found none"):
         loaded(TIMES)
     monkeypatch.undo()
@@ -149,14 +149,14 @@ def test_overlap_as_deep_as_the_deflection_is_searched(deep: GearModel, monkeypa
 
 
 def test_flanks_turned_into_each_other_by_more_than_half_a_module_are_not_searched(deep: GearModel) -> None:
-    """Problem: either gear turned into the other by 0.49 and 0.51 modules of normal distance, beyond what any search
-    pairs. Exact: all are refused as too deep, the second ones before a search that would find no flanks within reach.
-    """
+    """Problem: either gear turned into the other by 0.51 modules of normal distance; and by less, on flanks that
+    overlap as much by their modifications. Exact: refused as too deep, the first before any search."""
     module, gears = deep.pair.pinion.normal_module, deep.pair.gears
     per_module = [module / gear.base_radius / np.cos(gear.base_helix_angle) for gear in gears]
-    for gear, share, searches in ((0, 0.49, 1), (0, 0.51, 0), (1, 0.49, 1), (1, 0.51, 0)):
+    for gear, share, searches in ((0, 0.51, 0), (1, 0.51, 0), (0, 0.2, 1)):
         turned = (share * per_module[0], 0.0) if gear == 0 else (0.0, share * per_module[1])
-        with patch.object(pair_contact, "gear_contact", side_effect=pair_contact.gear_contact) as search:
+        counted = patch.object(pair_contact, "gear_contact", side_effect=pair_contact.gear_contact)
+        with counted as search, patch.object(GearContact, "overlap", 0.51):
             with pytest.raises(NotConverged, match="deflect by less than half a module"):
                 shared_position(deep, 0.0, turned, [0.0], None)
             assert search.call_count == searches

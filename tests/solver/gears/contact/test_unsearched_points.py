@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.fem.surface import Surface
+from evolvent.gears.contact.contact_line import ContactLine
 from evolvent.gears.contact.search_window import EXTENSION
 from evolvent.gears.contact.unsearched_points import unsearched_pairs
 from evolvent_meshes.arrays import Floats
@@ -75,3 +78,18 @@ def test_steep_modifications_widen_what_is_looked_at() -> None:
     on = (ξ >= start) & (ξ <= end)
     assert on.any()
     assert (np.abs(across[on]) > WINDOW - 1e-3).all() and (np.abs(across[on]) < WINDOW + 0.3 + 1e-3).all()
+
+
+def test_points_lie_at_heights_that_both_flanks_have() -> None:
+    """Problem: the same flanks, the wheel's taken to be 1 mm wide. Exact: no point lies beyond it; with the whole face
+    some lie 0.9 mm from the middle."""
+    whole, flanks = line(LEAVING), overlapping()
+    pinion, wheel = whole.flanks
+    narrow = replace(whole, flanks=(pinion, replace(wheel, height=wheel.height / np.ptp(wheel.height))))
+
+    def heights(own: ContactLine) -> Floats:
+        pairing = unsearched_pairs(own, WINDOW, 0.0, flanks, GAP, OVERLAP)
+        return np.abs(flanks[0].positions(pairing.facet1, pairing.xi1[:, None])[:, 0, 2])
+
+    assert heights(whole).max() > 0.9
+    assert 0.4 < heights(narrow).max() <= 0.5

@@ -13,8 +13,10 @@ from evidence.benchmarks.accuracy.error_bars import hit_rate
 from evidence.benchmarks.accuracy.spacing import PLASTIC, SpacingProblem, measure_spacing
 from evidence.solved_run import solved_run
 from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.solution.certificates import pitch_imbalance
 from evolvent.results.archive.error_bar_data import summed_errors
 from evolvent.results.drawing.style import styled
+from evolvent.results.engagement import engagement
 from evolvent.results.error_bars.estimation import Companion, errors_between, estimated_errors
 from evolvent.results.error_bars.peak_bounds import roundness, tops
 from evolvent.results.error_bars.position_spacing import (
@@ -166,11 +168,17 @@ def test_spacing_errors_of_a_plastic_pinion_hold_the_true_error() -> None:
 
 def test_error_bars_sum_mesh_and_spacing(run: RunData) -> None:
     """A run with itself as its companion has no error in its transmission error but what lies between the positions;
-    the parts are added, and stand in the figures by themselves without any companion too."""
+    the parts are added, and stand in the figures by themselves without any companion too. The loss has the energy that
+    the pitch does not balance besides; the largest pressure lies at the limit of a tip-edge zone and has no bar."""
     (bars,) = estimated_errors(run, Companion(run, "", 0.0)).figures
     (mesh,), spacing = errors_between(run, run), spacing_errors(run, 0)
     assert mesh.transmission_error_peak_to_peak_um == 0.0 < bars.transmission_error_peak_to_peak_um
-    assert bars == summed_errors(mesh, spacing)
+    unbalanced = 100.0 * pitch_imbalance([each[0].result for each in run.positions])
+    summed = summed_errors(mesh, spacing)
+    assert engagement(run, 0).peak.at_zone_end and np.isnan(bars.max_pressure_MPa) and unbalanced > 0.0
+    assert bars.loss_percent == summed.loss_percent + unbalanced
+    known = {"max_pressure_MPa": summed.max_pressure_MPa, "loss_percent": summed.loss_percent}
+    assert replace(bars, **known) == summed
     (row,) = friction_rows(run)
     assert row.estimated_error is None and row.spacing_error == spacing
 

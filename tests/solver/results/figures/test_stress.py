@@ -93,7 +93,7 @@ def test_largest_pressure_is_in_every_picture(steep: RunData) -> None:
         assert np.isclose(drawn(trend, 1), pressure).any()
     assert np.nanmax(drawn(trend, 1)) == pytest.approx(max(wanted))
     assert np.isclose(drawn(hertz, 0), wanted[0]).any()
-    assert AT_ZONE_END in legend_of(over_turn) and AT_ZONE_END in legend_of(trend, 1)
+    assert AT_ZONE_END in legend_of(over_turn) and AT_ZONE_END in legend_of(trend, 4)
     assert f"computed, largest: {AT_ZONE_END}" in legend_of(hertz)
 
 

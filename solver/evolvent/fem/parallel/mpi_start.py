@@ -1,8 +1,9 @@
-"""How MPI starts: a process alone opens no port, and says in one line where MPI finds no temporary folder.
+"""How MPI starts: a process alone opens no port, and says in one line where MPI finds no temporary folder; SIGHUP stays
+a signal that ends the process.
 
 Open MPI's defaults are those of a cluster: a process that no mpirun has launched starts a daemon (Open MPI 4), and both
-listen on all interfaces, though they have nobody to talk to. The settings here are for processes alone; ranks have
-mpirun's. They hold while MPI starts: programs that this one starts, mpirun among them, do not inherit them.
+listen on all interfaces, though they have nobody to talk to. The settings against that are for processes alone; ranks
+have mpirun's. They hold while MPI starts: programs that this one starts, mpirun among them, do not inherit them.
 """
 
 from __future__ import annotations
@@ -32,6 +33,9 @@ ALONE = MappingProxyType(
     }
 )
 """Settings of a process without others; the user's own come first."""
+ANY = MappingProxyType({"UCX_DEBUG_SIGNO": "0"})
+"""Settings of every process. UCX, which Open MPI 5 loads, takes SIGHUP for "write a trace" otherwise, and a closed
+terminal ends nothing (github.com/openucx/ucx, issue 10742)."""
 TEMPORARY = ("TMPDIR", "TEMP", "TMP")
 """Environment variables that name the temporary folder, the first that is set."""
 MODULE = "mpi4py.MPI"
@@ -56,8 +60,8 @@ def is_first() -> bool:
 
 
 def start_alone_quietly() -> None:
-    """Lets the import of mpi4py.MPI, which starts MPI, do so with the settings `ALONE`, whichever module imports it
-    first. Where MPI has been started, or a rank starts it, nothing changes."""
+    """Lets the import of mpi4py.MPI, which starts MPI, do so with the settings `ANY`, and `ALONE` where no mpirun has
+    started this process, whichever module imports it first. Where MPI has been started nothing changes."""
     if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
         sys.meta_path.insert(0, _Finder())
 
@@ -68,7 +72,7 @@ class _Finder(MetaPathFinder):
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        spec = PathFinder.find_spec(fullname, path) if fullname == MODULE and not launched() else None
+        spec = PathFinder.find_spec(fullname, path) if fullname == MODULE else None
         if spec is None or spec.origin is None:
             return None
         spec.loader = _Loader(fullname, spec.origin)
@@ -76,9 +80,16 @@ class _Finder(MetaPathFinder):
 
 
 class _Loader(ExtensionFileLoader):
-    """Loads mpi4py.MPI with the settings of a process alone. Raises InputError as `_require_temporary_folder`."""
+    """Loads mpi4py.MPI with the settings of this process. Raises InputError as `_require_temporary_folder`."""
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        with _set(ANY):  # read by UCX when the library is loaded
+            return super().create_module(spec)
 
     def exec_module(self, module: ModuleType) -> None:
+        if launched():
+            super().exec_module(module)
+            return
         _require_temporary_folder()
         with _set(ALONE):
             super().exec_module(module)

@@ -37,6 +37,23 @@ def test_ranks_have_the_settings_of_mpirun(run_script: RunScript, monkeypatch: p
     assert done.stdout == "['evolvent', 'evolvent']", done.stderr
 
 
+@pytest.mark.mpi
+def test_start_of_mpi_leaves_signals_to_the_program(run_script: RunScript) -> None:
+    """A handler of SIGHUP from before MPI started is called after it, on ranks as in a process alone: UCX, where Open
+    MPI loads it (Debian 13), would put its own in its place."""
+    program = (
+        "import os, signal, evolvent\n"
+        "called = []\n"
+        "signal.signal(signal.SIGHUP, lambda *_: called.append(evolvent.__name__))\n"
+        "from mpi4py import MPI\n"
+        "os.kill(os.getpid(), signal.SIGHUP)\n"
+        "print('called' if called else 'lost', end='', flush=True)\n"
+    )
+    for ranks in (1, 2):
+        done = run_script("-c", program, ranks=ranks)
+        assert done.stdout == "called" * ranks, done.stderr
+
+
 def test_launchers_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """A process without a launcher's variable is alone; with any of them it is a rank."""
     mpirun, srun = ("OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"), ("PMIX_NAMESPACE", "PMI_SIZE", "PMI_FD")

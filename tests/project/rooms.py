@@ -75,7 +75,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "results": (
         "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
     ),
-    "results.error_bars": ("meshes", "gears.line", "results.archive", "results"),
+    "results.error_bars": ("meshes", "gears.line", "gears.solution", "results.archive", "results"),
     "results.tables": (
         "meshes", "meshes.gears", "gears.pressure", "gears.solution", "scene", "results.archive", "results",
         "results.error_bars",

@@ -134,7 +134,7 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             for name, rows in PARTS[part](Measurement(given.small, peers, Path(folder))):
                 _kept(given.out / "benchmark" / f"{name}.csv", rows)
-    write_page(given.out)
+    write_page(given.out, measured=given.part != "page")
 
 
 def _kept(path: Path, rows: Iterable[Any]) -> None:

@@ -16,12 +16,21 @@ SECTIONS = (*comparison.SECTIONS, *gear_pairs.COSTS, *accuracy.SECTIONS, *root_s
     *gear_pairs.WEAR, *gear_pairs.MOTION)
 
 
-def write_page(out: Path) -> Path:
-    """The page and its figures, below this folder; parts that were not measured are left out. Raises OSError."""
+def write_page(out: Path, measured: bool = True) -> Path:
+    """The page and its figures, below this folder; parts that were not measured are left out. measured: whether this
+    machine measured a part; else the page keeps the header of the machine that did. Raises OSError."""
+    path = out / "benchmark.md"
+    is_kept = path.exists() and not measured
+    first = _header_of(path) if is_kept else header("Benchmarks", COMMAND)
     (out / PICTURES).mkdir(parents=True, exist_ok=True)
     for section in SECTIONS:
         section.draw(out / "benchmark", out / PICTURES)
-    return write(out / "benchmark.md", [header("Benchmarks", COMMAND), *parts(out / "benchmark")])
+    return write(path, [first, *parts(out / "benchmark")])
+
+
+def _header_of(page: Path) -> str:
+    """The header that a page has, by `evidence.report.header`."""
+    return "\n\n".join(page.read_text(encoding="utf-8").split("\n\n")[:2])
 
 
 def parts(tables: Path) -> list[str]:

@@ -21,6 +21,7 @@ from evidence.benchmarks.gears.whole_runs import RunCase, RunRow, failed
 from evidence.benchmarks.motion.motion_row import MotionRow
 from evidence.benchmarks.pages.comparison import advantage, unmatched
 from evidence.benchmarks.pages.page import write_page
+from evidence.report import header, machine
 from evidence.tables import read_rows, write_rows
 
 if TYPE_CHECKING:
@@ -100,3 +101,16 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     for figure in ("pitches", "earlier_pitches"):
         assert (tmp_path / f"pictures/benchmark/{figure}.png").stat().st_size > 10_000
     assert "Cylinder on block" not in text
+
+
+def test_a_page_that_is_written_again_keeps_the_machine_that_measured(tmp_path: Path) -> None:
+    """Problem: a page by another machine, written again from kept tables. Exact: its header stays as it is; after a
+    measurement it names this machine."""
+    (tmp_path / "benchmark").mkdir()
+    other = header("Benchmarks", "a command").replace(machine(), "another machine")
+    page = write_page(tmp_path, measured=False)
+    assert machine() in page.read_text(encoding="utf-8")
+    page.write_text(f"{other}\n\nold text\n", encoding="utf-8")
+    text = write_page(tmp_path, measured=False).read_text(encoding="utf-8")
+    assert text.startswith(f"{other}\n") and "old text" not in text
+    assert machine() in write_page(tmp_path).read_text(encoding="utf-8")

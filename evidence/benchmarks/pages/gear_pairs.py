@@ -102,8 +102,8 @@ def _earlier_said(rows: Sequence[EarlierRow]) -> list[str]:
         f"Commits {before} (*before*) and {now} (*now*), one run after the other on {RANKS} ranks "
         "(`python -m evidence.benchmarks.gears.earlier CHECKOUT`): wall seconds of the whole process, memory of all "
         "ranks at once. *Now* with an empty cache of condensed gears, *again* with the filled one. *Off*: the "
-        "peak-to-peak transmission error before, less that now. Rows were measured on machines of different speed: only "
-        "seconds of one row compare."
+        "peak-to-peak transmission error before, less that now. Rows were measured on machines of different speed: "
+        "only seconds of one row compare."
     ]
 
 
